@@ -1,6 +1,6 @@
-# Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal sparse
-# Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), nauty (canonical forms of graphs), Ceres
-# (non-linear least squares).
+# Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal
+# sparse Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), nauty (canonical forms of graphs), Lua
+# (scripts), Ceres (non-linear least squares).
 # Also installed, for the projects that link geoprior.
 if(NOT TARGET geoprior_cholmod)
   # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
@@ -36,6 +36,12 @@ if(NOT TARGET geoprior_cholmod)
   add_library(geoprior_nauty INTERFACE IMPORTED)
   target_include_directories(geoprior_nauty SYSTEM INTERFACE ${NAUTY_INCLUDE_DIR})
   target_link_libraries(geoprior_nauty INTERFACE ${NAUTY_LIBRARY})
+
+  find_path(LUA_INCLUDE_DIR NAMES lua5.4/lua.h REQUIRED)
+  find_library(LUA_LIBRARY lua5.4 REQUIRED)
+  add_library(geoprior_lua INTERFACE IMPORTED)
+  target_include_directories(geoprior_lua SYSTEM INTERFACE ${LUA_INCLUDE_DIR} ${LUA_INCLUDE_DIR}/lua5.4)
+  target_link_libraries(geoprior_lua INTERFACE ${LUA_LIBRARY})
 
   # Ceres' own package names the static library: its copies of Eigen's functions would be merged with ours, which align
   # memory otherwise (EIGEN_MAX_ALIGN_BYTES), and free what the others allocated. The shared one keeps them to itself.

@@ -10,7 +10,8 @@
   TOPIC(details)               \
   TOPIC(sketch)                \
   TOPIC(torus)                 \
-  TOPIC(assembly)
+  TOPIC(assembly)              \
+  TOPIC(grammar)
 
 /// What experiments/<name> defines.
 #define GEOPRIOR_DECLARE(name) \

@@ -15,6 +15,7 @@ packages=(
   # libraries
   libeigen3-dev libtbb-dev libcgal-dev libvtk9-dev libhdf5-dev libssl-dev
   libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libnauty2-dev libceres-dev libspectra-dev
+  liblua5.4-dev
   libopenimageio-dev openimageio-tools python3-imath libsndfile1-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev

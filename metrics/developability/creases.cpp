@@ -70,10 +70,10 @@ int index(const PatternGrid& grid, int i, int j) { return j * grid.columns + i; 
 
 /// Ring of grid offsets about a point.
 constexpr int kRing = 16;
-using Ring = std::array<std::array<int, 2>, kRing>;
+using CellRing = std::array<std::array<int, 2>, kRing>;
 
-Ring ring_of(double radius_in_spacings) {
-  Ring ring{};
+CellRing ring_of(double radius_in_spacings) {
+  CellRing ring{};
   for (int k = 0; k < kRing; ++k) {
     const double angle = 2 * pi * k / kRing;
     ring[k] = {static_cast<int>(std::lround(radius_in_spacings * std::cos(angle))),
@@ -83,7 +83,7 @@ Ring ring_of(double radius_in_spacings) {
 }
 
 /// Energy at a grid point; negative where the ring leaves the pattern.
-double ring_energy(const GriddedSheet& sheet, const Ring& ring, int i, int j) {
+double ring_energy(const GriddedSheet& sheet, const CellRing& ring, int i, int j) {
   std::array<int, kRing> triangle{};
   bool same = true;
   for (std::size_t k = 0; k < kRing; ++k) {
@@ -110,7 +110,7 @@ struct EnergyField {
   }
 };
 
-EnergyField energy_field(const GriddedSheet& sheet, const Ring& ring) {
+EnergyField energy_field(const GriddedSheet& sheet, const CellRing& ring) {
   EnergyField field{(sheet.grid.columns + 1) / 2, (sheet.grid.rows + 1) / 2, {}};
   for (int j = 0; j < field.rows; ++j) {
     for (int i = 0; i < field.columns; ++i) {

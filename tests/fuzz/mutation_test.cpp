@@ -94,6 +94,12 @@ TEST(LongFuzz, AssemblyReaderAcceptsOrThrowsError) {
   for (const char* file : {"blocks.assembly.toml", "blocks.json"})
     run_on(file, {corpus_file(file)}, fuzz_assembly);
 }
+TEST(LongFuzz, GestureReaderAcceptsOrThrowsError) {
+  run_on("drag.gesture.toml", {corpus_file("drag.gesture.toml")}, fuzz_gesture);
+}
+TEST(LongFuzz, ScriptsOfRulesRunOrThrowError) {
+  run_on("rules.lua", {corpus_file("rules.lua")}, fuzz_rules);
+}
 TEST(LongFuzz, ReaderOfPartsInScenesAcceptsOrThrowsError) {
   run_on("parts.glb", {corpus_file("blocks.glb")}, fuzz_gltf_parts);
 }

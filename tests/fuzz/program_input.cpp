@@ -64,8 +64,10 @@ ProgramInput input_of(const std::string& topic, const std::string& experiment,
 ProgramInput experiment_input() {
   ProgramInput input;
   for (const auto& [name, text] : small_experiments()) input.seeds.push_back(text);
-  const std::string blocks = "fuzz/corpus/blocks.assembly.toml";  // named by the one of assembly
-  input.home[blocks] = read_whole_file(kSource / "tests" / blocks);
+  for (const char* name : {"blocks.assembly.toml", "drag.gesture.toml", "rules.lua"}) {
+    const std::string named = std::string("fuzz/corpus/") + name;  // by those of assembly, grammar
+    input.home[named] = read_whole_file(kSource / "tests" / named);
+  }
   const std::string file = "experiments/fuzzed/small.toml";
   Words quick = run_command("fuzzed/small");
   quick.emplace_back("--quick");
@@ -286,6 +288,8 @@ std::vector<InputKind> input_kinds() {
          const std::string file = "experiments/assembly/model.gltf";
          return model_input(".gltf", topic_folder("assembly").at(file));
        }},
+      {"Gesture", 1, [] { return input_of("grammar", "pull", "pull.gesture.toml"); }},
+      {"Rules", 1, [] { return input_of("grammar", "pull", "pull.rules.lua"); }},
       {"EditList", 1, [] { return sculpt_input("edits.data.toml"); }},
       {"FeatureLibrary", 1, [] { return sculpt_input("features.h5"); }},
       {"Reference", 1, reference_input},

@@ -27,6 +27,8 @@ void fuzz_table(const std::uint8_t* data, std::size_t size);
 /// JSON where the first byte is a brace, else TOML.
 void fuzz_assembly(const std::uint8_t* data, std::size_t size);
 void fuzz_xtrackcad(const std::uint8_t* data, std::size_t size);
+void fuzz_gesture(const std::uint8_t* data, std::size_t size);
+void fuzz_rules(const std::uint8_t* data, std::size_t size);
 void fuzz_gltf_parts(const std::uint8_t* data, std::size_t size);
 // These readers open a file: the bytes are written to one.
 void fuzz_points(const std::uint8_t* data, std::size_t size);

@@ -1,0 +1,210 @@
+#include <utility>
+
+#include "baselines/grammar/free_form.h"
+#include "baselines/grammar/instance_frames.h"
+#include "baselines/grammar/optimum/building.h"
+#include "baselines/grammar/optimum/sets.h"
+#include "baselines/grammar/optimum/tree.h"
+#include "baselines/grammar/regeneration.h"
+#include "core/error.h"
+#include "experiments/grammar/processes/methods.h"
+#include "solvers/grammar/rules/rules.h"
+
+namespace geoprior::grammar {
+namespace {
+
+/// A baseline that keeps a state after the edits, which are made as they are asked for: no rules.
+class PlainDeformer : public Deformer {
+ public:
+  explicit PlainDeformer(const GrammarScene& scene)
+      : scene_(scene), base_(scene.rest), undo_(base_) {
+    no_rules_.bound_locality("*");
+  }
+  void edit(const SceneEdit& edit, RunContext&) override {
+    derive(base_, undo_, no_rules_, edit.wish);
+    if (edit.tag) base_.set_tag(edit.wish.element, *edit.tag);
+    edited_ = true;
+  }
+  void deform(std::size_t step, RunContext& context) override {
+    edited_ = false;
+    map_ = scene_.asked_map(step);
+    const geoprior::Phase phase(context, "deform");
+    make(*map_);
+  }
+  [[nodiscard]] const Hierarchy& shown() const override { return base_; }
+
+ protected:
+  virtual void make(const SpatialMap& map) = 0;
+  [[nodiscard]] bool shows_base() const { return edited_ || map_ == nullptr; }
+
+  const GrammarScene& scene_;
+  Hierarchy base_;
+  std::shared_ptr<const SpatialMap> map_;
+
+ private:
+  RuleSet no_rules_;
+  Transaction undo_;
+  bool edited_ = false;
+};
+
+/// Ignores edits, too.
+class NothingDeformer final : public Deformer {
+ public:
+  explicit NothingDeformer(const GrammarScene& scene) : scene_(scene) {}
+  void edit(const SceneEdit&, RunContext&) override {}
+  void deform(std::size_t, RunContext&) override {}
+  [[nodiscard]] const Hierarchy& shown() const override { return scene_.rest; }
+
+ private:
+  const GrammarScene& scene_;
+};
+
+/// Moves key points and vertices, and knows no elements.
+class GeometryDeformer : public PlainDeformer {
+ public:
+  using PlainDeformer::PlainDeformer;
+  [[nodiscard]] Geometry geometry(bool with_surface) const override {
+    return shows_base() ? geometry_of(base_, with_surface) : moved_;
+  }
+
+ protected:
+  [[nodiscard]] Geometry before(bool vertices) const {
+    return geometry_of(base_, vertices || scene_.record == GrammarSceneOptions::Record::surface);
+  }
+  Geometry moved_;
+};
+
+class FreeFormDeformer final : public GeometryDeformer {
+ public:
+  using GeometryDeformer::GeometryDeformer;
+
+ private:
+  void make(const SpatialMap& map) override { moved_ = free_form(before(false), map); }
+};
+
+class RigidDeformer final : public GeometryDeformer {
+ public:
+  RigidDeformer(const GrammarScene& scene, const RigidAsPossibleOptions& options)
+      : GeometryDeformer(scene), options_(options) {}
+
+ private:
+  void make(const SpatialMap& map) override {
+    moved_ = rigid_as_possible(before(true), map, options_);
+    if (scene_.record == GrammarSceneOptions::Record::surface) return;
+    moved_.surface = {};
+  }
+  RigidAsPossibleOptions options_;
+};
+
+/// Makes a hierarchy of the state after the edits.
+class HierarchyDeformer : public PlainDeformer {
+ public:
+  using PlainDeformer::PlainDeformer;
+  [[nodiscard]] const Hierarchy& shown() const override { return shows_base() ? base_ : made_; }
+
+ protected:
+  Hierarchy made_;
+};
+
+class FramesDeformer final : public HierarchyDeformer {
+ public:
+  using HierarchyDeformer::HierarchyDeformer;
+
+ private:
+  void make(const SpatialMap& map) override {
+    made_ = instance_frames(base_, map, scene_.gesture_element);
+  }
+};
+
+class RegeneratingDeformer final : public HierarchyDeformer {
+ public:
+  using HierarchyDeformer::HierarchyDeformer;
+
+ private:
+  void make(const SpatialMap& map) override {
+    made_ = regenerate(scene_.rest, scene_.generate, map);
+  }
+};
+
+class OptimumDeformer final : public Deformer {
+ public:
+  OptimumDeformer(const GrammarScene& scene, RunContext&)
+      : scene_(scene), grammar_(scene.rest, object_rules(), {}) {}
+
+  void edit(const SceneEdit& edit, RunContext&) override {
+    grammar_.edit(edit.wish, edit.tag);
+    base_ = grammar_.state();
+    result_.reset();
+  }
+  void deform(std::size_t step, RunContext& context) override {
+    const auto map = scene_.asked_map(step);
+    {
+      const geoprior::Phase phase(context, "derive");
+      grammar_.gesture(scene_.gesture_element, map, map);
+    }
+    const geoprior::Phase phase(context, "optimise");
+    const Hierarchy& rest = base_ ? *base_ : scene_.rest;
+    switch (scene_.kind) {
+      case Object::tree:
+        result_ = optimise_tree(rest, grammar_.state(), *map);
+        return;
+      case Object::building:
+        result_ = optimise_building(rest, grammar_.state(), *map);
+        return;
+      case Object::surface_set:
+      case Object::volume_set:
+      case Object::forest:
+        result_ = optimise_set(rest, grammar_.state(), *map);
+        return;
+      default:
+        throw Error("has no optimum", "object '" + scene_.object + "'",
+                    "tree, building, surface-set, volume-set, forest");
+    }
+  }
+  [[nodiscard]] const Hierarchy& shown() const override {
+    return result_ ? result_->state : grammar_.state();
+  }
+  [[nodiscard]] std::map<std::string, double> diagnostics() const override {
+    if (!result_) return {};
+    return {{"iterations", result_->iterations},
+            {"gradient", result_->gradient},
+            {"start", result_->start}};
+  }
+
+ private:
+  const GrammarScene& scene_;
+  DeformationGrammar grammar_;
+  std::optional<Hierarchy> base_;
+  std::optional<OptimumResult> result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Deformer> nothing_deformer(const GrammarScene& scene) {
+  return std::make_unique<NothingDeformer>(scene);
+}
+
+std::unique_ptr<Deformer> free_form_deformer(const GrammarScene& scene) {
+  return std::make_unique<FreeFormDeformer>(scene);
+}
+
+std::unique_ptr<Deformer> frames_deformer(const GrammarScene& scene) {
+  return std::make_unique<FramesDeformer>(scene);
+}
+
+std::unique_ptr<Deformer> rigid_deformer(const GrammarScene& scene,
+                                         const RigidAsPossibleOptions& options) {
+  return std::make_unique<RigidDeformer>(scene, options);
+}
+
+std::unique_ptr<Deformer> regenerating_deformer(const GrammarScene& scene) {
+  if (!scene.generate)
+    throw Error("has no procedure", "object '" + scene.object + "'", "a procedural object");
+  return std::make_unique<RegeneratingDeformer>(scene);
+}
+
+std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene, RunContext& context) {
+  return std::make_unique<OptimumDeformer>(scene, context);
+}
+
+}  // namespace geoprior::grammar
