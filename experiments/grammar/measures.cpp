@@ -11,7 +11,6 @@
 #include "experiments/grammar/measures/fidelity.h"
 #include "experiments/grammar/measures/motion.h"
 #include "experiments/grammar/measures/persistence.h"
-#include "solvers/grammar/rules/rules.h"
 
 namespace geoprior::grammar {
 namespace {
@@ -42,18 +41,6 @@ AskedPlaces asked_at(const GrammarScene& scene, std::size_t step) {
     if (scene.steps.at(i).kind == Step::Kind::edit)
       edits.push_back(scene.edits.at(scene.steps[i].number).wish);
   return {scene.rest, edits, scene.asked_map(step), scene.gesture_element};
-}
-
-/// Elements that are not below the one that bounds the locality of an edit, by the objects' rules.
-std::vector<int> beyond_locality(const GrammarScene& scene, int edited) {
-  static const RuleSet kRules = object_rules();
-  int bound = edited;
-  while (scene.rest.parent(bound) >= 0 && !kRules.bounds_locality(scene.rest.type(bound).name))
-    bound = scene.rest.parent(bound);
-  std::vector<int> out;
-  for (int e = 0; e < scene.rest.size(); ++e)
-    if (scene.rest.present(e) && !scene.rest.is_below(e, bound)) out.push_back(e);
-  return out;
 }
 
 ConstraintMeasures constraints_of(const GrammarScene& scene, const RecordedState& state,
@@ -176,8 +163,6 @@ LocalityMeasures locality_measures(const GrammarScene& scene, const FrameSequenc
     const Step& now = scene.steps.at(step);
     if (now.kind == Step::Kind::edit) {
       const SceneEdit& edit = scene.edits.at(now.number);
-      const std::vector<int> others = beyond_locality(scene, edit.wish.element);
-      if (start && !others.empty()) raise(out.stray_of_edits, changed_among(others, state, *start));
       const bool again = edits.forget(edit.wish.element);
       edits.compare(state);
       if (edit.tag || again) edits.remember(state, edit.wish.element);

@@ -67,7 +67,6 @@ MotionMeasures motion_measures(const GrammarScene& scene, const FrameSequence& f
 /// Elements that nothing asks to change, and those that nothing may change.
 struct LocalityMeasures {
   Value stray_of_gestures;  ///< worst of the steps of a gesture and the random gestures
-  Value stray_of_edits;     ///< worst of the edits
   Value tagged_change;      ///< m
   Value tagged_parameter_change;
   Value lost_edits;

@@ -216,10 +216,6 @@ MetricGroup locality_group() {
            "the object's diagonal or more from where the map of this or an earlier step of the "
            "gesture is not the identity; at the worst step",
            kLow, kExact, &M::stray_of_gestures)
-      .row("edit_stray_changes", "1",
-           "elements that are not the same bytes as before an edit, though they are not below the "
-           "element that bounds its locality; of the worst edit",
-           kLow, kExact, &M::stray_of_edits)
       .row("tagged_change", "m",
            "largest change of a distance between two key points of a tagged element since its "
            "edit, at any later frame",

@@ -23,6 +23,13 @@ double full_extent(const RecordedState& state, const RecordedElement& element) {
   return size && *size > 0 ? extent / *size : extent;
 }
 
+/// The same element in another frame. New elements are numbered as they come: one of the same
+/// number that hangs on another element is another one.
+const RecordedElement* same_in(const RecordedState& other, const RecordedElement& e, bool is_new) {
+  const RecordedElement* same = other.find_same(e);
+  return is_new && same != nullptr && same->parent != e.parent ? nullptr : same;
+}
+
 }  // namespace
 
 void PopMeter::note(int element, double size, double pop) {
@@ -38,7 +45,7 @@ void PopMeter::add(const RecordedState& before, const AskedPlaces& asked_before,
   for (const RecordedElement& e : before.elements()) {
     if (e.keys.empty()) continue;
     const double extent = element_extent(before, e);
-    const RecordedElement* same = now.find_same(e);
+    const RecordedElement* same = same_in(now, e, !asked_before.knows(e));
     if (same == nullptr) {
       note(e.number, full_extent(before, e), extent);
       continue;
@@ -53,7 +60,7 @@ void PopMeter::add(const RecordedState& before, const AskedPlaces& asked_before,
     note(e.number, std::max(full_extent(before, e), full_extent(now, *same)), pop);
   }
   for (const RecordedElement& e : now.elements())
-    if (!e.keys.empty() && before.find_same(e) == nullptr)
+    if (!e.keys.empty() && same_in(before, e, !asked_now.knows(e)) == nullptr)
       note(e.number, full_extent(now, e), element_extent(now, e));
 }
 

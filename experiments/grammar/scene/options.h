@@ -28,12 +28,12 @@ struct ImportedOptions {
 struct EditOptions {
   enum class Kind { translate, turn, set, extrude };
   enum class Keep { rigid, stop, no };
-  std::string element;
+  std::string element = {};
   Kind kind = Kind::translate;
   std::array<double, 3> by{0, 0, 0};    ///< translate (m)
   std::array<double, 3> axis{0, 0, 1};  ///< turn, about the element's position
   double angle_deg = 0;                 ///< turn
-  std::string parameter;                ///< set, extrude
+  std::string parameter = {};           ///< set, extrude
   double value = 0;                     ///< set: the value; extrude: by how much
   Keep keep = Keep::rigid;
 };

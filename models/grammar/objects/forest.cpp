@@ -16,7 +16,7 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-using C = ConiferParameter;
+using Conifer = ConiferParameter;
 
 constexpr int kConiferSides = 8;
 /// Elements in a square of the least distance, as `sample_disks` leaves them.
@@ -88,10 +88,11 @@ ElementType conifer_type() {
                     {"candidate", "1", 0, 1}};
   out.keys = [](std::span<const double> p, std::vector<Vector3d>& keys) {
     keys.push_back(Vector3d::Zero());
-    keys.emplace_back(0, 0, p[C::kSize] * p[C::kHeight]);
+    keys.emplace_back(0, 0, p[Conifer::kSize] * p[Conifer::kHeight]);
   };
   out.mesh = [](std::span<const double> p) {
-    return conifer_mesh(p[C::kSize] * p[C::kHeight], 0.85 * p[C::kSize] * p[C::kRadius]);
+    return conifer_mesh(p[Conifer::kSize] * p[Conifer::kHeight],
+                        0.85 * p[Conifer::kSize] * p[Conifer::kRadius]);
   };
   return out;
 }

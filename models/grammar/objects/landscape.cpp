@@ -244,11 +244,11 @@ std::array<Vector3d, 8> upright_block(double width, double depth, double low, do
 
 /// Plinth, walls, a gable roof along x, a door.
 TriMesh house_mesh(std::span<const double> p) {
-  using H = HouseParameter;
-  const double width = p[H::kWidth], depth = p[H::kDepth], height = p[H::kHeight];
+  using House = HouseParameter;
+  const double width = p[House::kWidth], depth = p[House::kDepth], height = p[House::kHeight];
   const double rise = roof_rise(depth);
   TriMesh m;
-  append_block(upright_block(width + 0.2, depth + 0.2, -p[H::kPlinth], 0.02), m);
+  append_block(upright_block(width + 0.2, depth + 0.2, -p[House::kPlinth], 0.02), m);
   append_block(upright_block(width, depth, 0, height), m);
   const double slope = 2 * rise / depth, out = kEaves;
   auto gable = upright_block(width + 2 * out, depth + 2 * out, height - slope * out, height + rise);
@@ -295,7 +295,7 @@ TriMesh stone_mesh(std::span<const double> p) {
 const ParameterType kUnitShare{"size", "1", 0, 1};
 
 ElementType pine_type() {
-  using P = PineParameter;
+  using Pine = PineParameter;
   ElementType out;
   out.name = "pine";
   out.parameters = {kUnitShare,
@@ -307,16 +307,16 @@ ElementType pine_type() {
                     {"candidate", "1", 0, 1}};
   out.keys = [](std::span<const double> p, std::vector<Vector3d>& keys) {
     keys.push_back(Vector3d::Zero());
-    keys.emplace_back(0, 0, p[P::kSize] * p[P::kHeight]);
+    keys.emplace_back(0, 0, p[Pine::kSize] * p[Pine::kHeight]);
   };
   out.mesh = [](std::span<const double> p) {
-    return conifer_mesh(p[P::kSize] * p[P::kHeight], 0.9 * p[P::kSize] * p[P::kRadius]);
+    return conifer_mesh(p[Pine::kSize] * p[Pine::kHeight], 0.9 * p[Pine::kSize] * p[Pine::kRadius]);
   };
   return out;
 }
 
 ElementType house_type() {
-  using H = HouseParameter;
+  using House = HouseParameter;
   ElementType out;
   out.name = "house";
   out.parameters = {{"width", "m", 1, 100},  {"depth", "m", 1, 100},    {"height", "m", 1, 50},
@@ -324,8 +324,9 @@ ElementType house_type() {
                     {"b1", "1", 0, 1}};
   out.keys = [](std::span<const double> p, std::vector<Vector3d>& keys) {
     keys.push_back(Vector3d::Zero());
-    for (const Vector3d& corner : floor_corners(p[H::kWidth], p[H::kDepth])) keys.push_back(corner);
-    keys.emplace_back(0, 0, p[H::kHeight] + roof_rise(p[H::kDepth]));
+    for (const Vector3d& corner : floor_corners(p[House::kWidth], p[House::kDepth]))
+      keys.push_back(corner);
+    keys.emplace_back(0, 0, p[House::kHeight] + roof_rise(p[House::kDepth]));
   };
   out.mesh = house_mesh;
   return out;
@@ -514,6 +515,27 @@ double plinth_depth(const Ground& ground, const Pose& pose, double width, double
   for (const Vector3d& corner : floor_corners(width, depth))
     out = std::max(out, ground.gap(pose * corner) + kPlinthFoot);
   return out;
+}
+
+double house_radius(const Hierarchy& h, int house) {
+  return house_radius(h.parameter(house, HouseParameter::kWidth),
+                      h.parameter(house, HouseParameter::kDepth));
+}
+
+double plinth_depth(const Ground& ground, const Hierarchy& h, int house, const Pose& pose) {
+  return plinth_depth(ground, pose, h.parameter(house, HouseParameter::kWidth),
+                      h.parameter(house, HouseParameter::kDepth));
+}
+
+int terrain_of(const Hierarchy& h, int landscape) {
+  for (const int child : h.children(landscape))
+    if (h.type(child).name == "terrain" && h.present(child)) return child;
+  throw Error("has no terrain", "element '" + h.label(landscape) + "'", "one that is present");
+}
+
+Ground ground_of(const Hierarchy& h, int landscape) {
+  const int terrain = terrain_of(h, landscape);
+  return {h.points(terrain), h.type(terrain).triangles};
 }
 
 Hierarchy make_landscape(const LandscapeOptions& o, std::uint64_t seed) {

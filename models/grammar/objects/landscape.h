@@ -89,6 +89,14 @@ class Ground {
 /// The least depth of a plinth that reaches into the ground at all corners of a floor (m).
 double plinth_depth(const Ground& ground, const Pose& pose, double width, double depth);
 
+/// The same of a house of a hierarchy, as it would be in a pose.
+double house_radius(const Hierarchy& h, int house);
+double plinth_depth(const Ground& ground, const Hierarchy& h, int house, const Pose& pose);
+
+/// @throws Error  when the landscape has no terrain, or it is not present
+int terrain_of(const Hierarchy& h, int landscape);
+Ground ground_of(const Hierarchy& h, int landscape);
+
 /// A landscape about the origin at rest, which keeps all its constraints.
 ///
 /// Types: "landscape", the root, whose key point is its position; "terrain", whose points are the

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "models/grammar/maps/strokes.h"
 
 namespace geoprior::grammar {
 namespace {
@@ -33,6 +34,9 @@ constexpr double kCirclesTouch = 1 + 1e-9, kCirclesClear = 1 + 1e-6;
 constexpr int kMostPushes = 300;
 /// Relative slack of the distances of stones, beyond rounding.
 constexpr double kStepSlack = 1e-9;
+/// How far along the path a stone that is moved takes others along: so many pitches and so many
+/// times its shift.
+constexpr double kFollowPitches = 4, kFollowShifts = 2.5;
 
 double full_room(SpacedKind kind) {
   return kind == SpacedKind::candidate ? kCandidateRoom : kElementRoom;
@@ -236,9 +240,7 @@ class SpacingGrid {
 /// The recursion of `space_path`.
 class StonePath {
  public:
-  using Ground = std::function<std::optional<Vector3d>(const Vector3d&)>;
-
-  StonePath(std::vector<PathStone>& stones, double pitch, const Ground& ground)
+  StonePath(std::vector<PathStone>& stones, double pitch, const PathGround& ground)
       : stones_(stones), pitch_(pitch), ground_(ground) {
     for (const PathStone& stone : stones) nodes_.emplace_back(stone.along, stone.x);
     std::stable_sort(nodes_.begin(), nodes_.end(),
@@ -322,7 +324,7 @@ class StonePath {
 
   std::vector<PathStone>& stones_;
   double pitch_;
-  const Ground& ground_;
+  const PathGround& ground_;
   std::vector<std::pair<double, Vector3d>> nodes_;  ///< by place in the path
 };
 
@@ -394,8 +396,7 @@ bool push_circles_apart(std::vector<SpacedCircle>& circles) {
   return false;
 }
 
-void space_path(std::vector<PathStone>& stones, double pitch,
-                const std::function<std::optional<Vector3d>(const Vector3d&)>& ground) {
+void space_path(std::vector<PathStone>& stones, double pitch, const PathGround& ground) {
   StonePath path(stones, pitch, ground);
   const int last = static_cast<int>(stones.size()) - 1;
   int before = 0;
@@ -407,6 +408,38 @@ void space_path(std::vector<PathStone>& stones, double pitch,
     if (i != last && !stones[i].is_fixed) continue;
     path.halve(before, i);
     before = i;
+  }
+}
+
+std::optional<double> broken_step(std::span<const PathStone> stones, double pitch) {
+  const double low = (1 - 1e-6) * kLeastStep * pitch, high = (1 + 1e-6) * kLargestStep * pitch;
+  const PathStone* before = nullptr;
+  for (const PathStone& stone : stones) {
+    if (stone.size == 0) continue;
+    const double step = before != nullptr ? (stone.x - before->x).norm() : pitch;
+    if (!(step >= low && step <= high)) return step;
+    before = &stone;
+  }
+  return std::nullopt;
+}
+
+void bend_path(std::vector<PathStone>& stones, int moved, const Vector3d& shift, double pitch,
+               const PathGround& ground) {
+  if (shift == Vector3d::Zero()) return;
+  const auto pitches = static_cast<double>(std::count_if(
+      stones.begin(), stones.end(), [](const PathStone& s) { return !s.is_candidate; }));
+  const double follow = (kFollowPitches + kFollowShifts * shift.norm() / pitch) / pitches;
+  const double from = stones[moved].along;
+  double before = follow, after = follow;
+  for (const PathStone& s : stones) {
+    if (s.is_fixed && s.along < from) before = std::min(before, from - s.along);
+    if (s.is_fixed && s.along > from) after = std::min(after, s.along - from);
+  }
+  for (int i = 0; i < std::ssize(stones); ++i) {
+    PathStone& s = stones[i];
+    const double away = std::abs(s.along - from) / (s.along < from ? before : after);
+    if (i == moved || s.is_fixed || away >= 1) continue;
+    if (const auto x = ground(s.x + falloff(away) * shift)) s.x = *x;
   }
 }
 

@@ -90,6 +90,9 @@ struct PathStone {
 /// Least and largest distance of consecutive stones over the pitch.
 inline constexpr double kLeastStep = 0.6, kLargestStep = 1.4;
 
+/// Where a point near a path is on the ground; absent beyond its rim.
+using PathGround = std::function<std::optional<Eigen::Vector3d>(const Eigen::Vector3d&)>;
+
 /// Which stones of a path are there, and how large: the path is halved again and again where its
 /// ends are more than a step apart.
 ///
@@ -101,10 +104,17 @@ inline constexpr double kLeastStep = 0.6, kLargestStep = 1.4;
 ///
 /// @param stones  in order along the path; gets places, sizes and `along`
 /// @param pitch   distance of stones at rest (m)
-/// @param ground  where a point near the path is on the ground; absent beyond its rim
-void space_path(
-    std::vector<PathStone>& stones, double pitch,
-    const std::function<std::optional<Eigen::Vector3d>(const Eigen::Vector3d&)>& ground);
+void space_path(std::vector<PathStone>& stones, double pitch, const PathGround& ground);
+
+/// A step that is out of the range above, beyond rounding (m); absent where all are in it.
+std::optional<double> broken_step(std::span<const PathStone> stones, double pitch);
+
+/// Takes along what is beside a stone that was moved, the less the further along the path it is;
+/// as far as the next fixed one.
+/// @param moved  number of the stone, which is where it is to be
+/// @param shift  by which it was moved (m)
+void bend_path(std::vector<PathStone>& stones, int moved, const Eigen::Vector3d& shift,
+               double pitch, const PathGround& ground);
 
 /// Disks, or balls, that are placed one after the other where they are at a distance from all
 /// before.

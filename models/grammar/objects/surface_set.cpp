@@ -18,7 +18,7 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-using I = ItemParameter;
+using Item = ItemParameter;
 
 constexpr int kBlobHalvings = 4;
 constexpr int kTorusAround = 84, kTorusAcross = 40;
@@ -70,7 +70,7 @@ TriMesh blob_surface(RandomStream& random) {
     const double r = std::sqrt(1 - z * z), phase = kFullTurn * random.uniform();
     const double frequency = 1.6 + 0.5 * k;
     waves.push_back(
-        {frequency * Vector3d(r * std::cos(turn), r * std::sin(turn), z), phase, 0.16 / frequency});
+        {frequency * Vector3d(r * std::cos(turn), r * std::sin(turn), z), phase, 0.3 / frequency});
   }
   TriMesh out = halved_octahedron(kBlobHalvings + 1);
   for (int v = 0; v < out.vertex_count(); ++v) {
@@ -139,7 +139,7 @@ SurfaceTrials surface_trials(const TriMesh& mesh, std::span<const Vector3d> vert
 
 /// Half an ellipsoid that goes on a little below the surface.
 TriMesh stud_mesh(std::span<const double> p) {
-  const double scale = p[I::kSize] * p[I::kRadius];
+  const double scale = p[Item::kSize] * p[Item::kRadius];
   constexpr std::array<std::array<double, 2>, 5> kProfile{
       {{0.96, -0.25}, {1, 0}, {0.87, 0.5}, {0.62, 0.78}, {0.3, 0.954}}};  // radius, height
   constexpr int kRings = static_cast<int>(kProfile.size());
@@ -174,7 +174,7 @@ ElementType item_type() {
                     {"b0", "1", 0, 1},   {"b1", "1", 0, 1},          {"candidate", "1", 0, 1}};
   out.keys = [](std::span<const double> p, std::vector<Vector3d>& keys) {
     keys.push_back(Vector3d::Zero());
-    keys.emplace_back(0, 0, kItemHeight * p[I::kSize] * p[I::kRadius]);
+    keys.emplace_back(0, 0, kItemHeight * p[Item::kSize] * p[Item::kRadius]);
   };
   out.mesh = stud_mesh;
   return out;

@@ -16,7 +16,7 @@ struct SurfaceSetOptions {
   enum class Shape { blob, torus };
   Shape shape = Shape::blob;
   double width = 2.4, depth = 2, height = 1.8;  ///< of the surface, along x, y, z (m)
-  double spacing = 0.17;                        ///< least distance of studs of full size (m)
+  double spacing = 0.15;                        ///< least distance of studs of full size (m)
 };
 void describe(OptionVisitor& v, SurfaceSetOptions& options);
 

@@ -16,7 +16,7 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-using G = GrainParameter;
+using Grain = GrainParameter;
 
 /// Random points of the body a ball of the candidates' distance.
 constexpr double kBodyTrials = 40;
@@ -25,7 +25,7 @@ constexpr double kMostGrains = 1e6;
 
 /// An ellipsoid in the ball of the grain.
 TriMesh pebble_mesh(std::span<const double> p) {
-  const Vector3d half = p[G::kSize] * p[G::kRadius] * Vector3d(1, 0.88, 0.72);
+  const Vector3d half = p[Grain::kSize] * p[Grain::kRadius] * Vector3d(1, 0.88, 0.72);
   TriMesh m;
   const int low = kPebbleRings * kPebbleSides, high = low + 1;
   m.V.resize(low + 2, 3);

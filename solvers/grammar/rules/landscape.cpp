@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/grammar/maps/strokes.h"
 #include "models/grammar/objects/forest.h"
 #include "models/grammar/objects/spacing.h"
 #include "solvers/grammar/rules/rules.h"
@@ -24,10 +23,6 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-
-/// How far along the path a stone that is moved takes others along: so many pitches and so many
-/// times its shift.
-constexpr double kFollowPitches = 4, kFollowShifts = 2.5;
 
 enum class Stands { pine, house, stone };
 
@@ -79,11 +74,12 @@ class LandscapeGrammar {
   void solve(const RuleCall& call, int landscape);
   [[nodiscard]] Standing carried(const RuleCall& call, int terrain, int e, Stands what) const;
   void place_houses(const RuleCall& call);
+  [[nodiscard]] bool is_free(const Standing& house, bool earlier_only) const;
+  void found_houses(const RuleCall& call);
   void drop_house(Standing& house, const SpacedCircle& circle) const;
   void require_clear(const RuleCall& call) const;
   void size_pines(const RuleCall& call);
   void lay_path(const RuleCall& call, int path);
-  void bend_path(std::vector<PathStone>& stones, const Standing& edited, double pitch) const;
   void write(RuleCall& call, const Standing& s) const;
   void move_standing(RuleCall& call, int e, Stands what) const;
   void edit_parameter(RuleCall& call, int e, Stands what) const;
@@ -92,7 +88,7 @@ class LandscapeGrammar {
   std::shared_ptr<const SpatialMap> map_;  ///< null: nothing is carried
   int scope_ = -1;                         ///< the element that the map deforms, with all below
   int solved_ = -1;                        ///< the landscape that the plan is of
-  std::optional<Ground> ground_;
+  std::optional<Ground> ground_, ground_before_;
   std::vector<Standing> standings_;
   std::map<int, int> standing_of_;  ///< by element
 };
@@ -111,17 +107,6 @@ std::shared_ptr<const SpatialMap> landscape_map(const RuleCall& call, std::size_
 }
 
 bool has_type(const Hierarchy& h, int e, const char* name) { return h.type(e).name == name; }
-
-int terrain_of(const Hierarchy& h, int landscape) {
-  for (const int child : h.children(landscape))
-    if (has_type(h, child, "terrain") && h.present(child)) return child;
-  throw Error("has no terrain", "element '" + h.label(landscape) + "'");
-}
-
-Ground ground_of(const Hierarchy& h, int landscape) {
-  const int terrain = terrain_of(h, landscape);
-  return {h.points(terrain), h.type(terrain).triangles};
-}
 
 void LandscapeGrammar::begin(const RuleCall& call) {
   if (derivation_ == call.derivation()) return;
@@ -184,8 +169,7 @@ Standing LandscapeGrammar::carried(const RuleCall& call, int terrain, int e, Sta
               ? call.pose_before(e).position
               : on_triangle(call.points_before(terrain), h.type(terrain).triangles, s.place);
   if (what == Stands::house) {
-    s.radius = house_radius(h.parameter(e, HouseParameter::kWidth),
-                            h.parameter(e, HouseParameter::kDepth));
+    s.radius = house_radius(h, e);
     s.plinth = h.parameter(e, HouseParameter::kPlinth);
   } else {
     s.radius = h.parameter(e, PineParameter::kRadius);
@@ -211,6 +195,7 @@ void LandscapeGrammar::solve(const RuleCall& call, int landscape) {
   standings_.clear();
   standing_of_.clear();
   ground_.emplace(ground_of(h, landscape));
+  ground_before_.emplace(call.points_before(terrain), h.type(terrain).triangles);
   for (const int holder : h.children(landscape))
     for (const int e : h.children(holder)) {
       const auto what = what_stands(h, e);
@@ -220,6 +205,7 @@ void LandscapeGrammar::solve(const RuleCall& call, int landscape) {
     }
   require_clear(call);
   place_houses(call);
+  found_houses(call);
   size_pines(call);
   for (const int holder : h.children(landscape))
     if (has_type(h, holder, "path") && h.present(holder)) lay_path(call, holder);
@@ -228,6 +214,11 @@ void LandscapeGrammar::solve(const RuleCall& call, int landscape) {
 SpacedCircle circle_of(const Standing& s) {
   return {s.pose.position.head<2>(), s.what == Stands::house ? s.radius : s.size * s.radius,
           s.is_fixed};
+}
+
+/// Other houses, and pines that do not yield.
+bool blocks_houses(const Standing& s) {
+  return s.what == Stands::house || (s.what == Stands::pine && s.is_fixed);
 }
 
 /// An edit may not bring something onto what another edit holds.
@@ -257,38 +248,49 @@ void LandscapeGrammar::drop_house(Standing& house, const SpacedCircle& circle) c
   house.pose.position = ground_->at(*place);
 }
 
+/// Whether nothing that another house keeps away from is too near.
+bool LandscapeGrammar::is_free(const Standing& house, bool earlier_only) const {
+  return std::none_of(standings_.begin(), standings_.end(), [&](const Standing& other) {
+    if (!blocks_houses(other) || !other.is_present || &other == &house) return false;
+    if (earlier_only && !other.is_fixed && &other > &house) return false;
+    return circles_meet(circle_of(house), circle_of(other));
+  });
+}
+
 /// Houses that meet are pushed apart; where there is no room for all, later ones go. One that had
 /// gone comes back where its place is clear.
 void LandscapeGrammar::place_houses(const RuleCall& call) {
   std::vector<SpacedCircle> circles;
-  std::vector<Standing*> houses;
+  std::vector<Standing*> bodies;
+  bool is_new = false;
   for (Standing& s : standings_) {
-    if (!s.is_present || s.what == Stands::stone) continue;
-    if (s.what == Stands::pine && !s.is_fixed) continue;
+    if (!s.is_present || !blocks_houses(s)) continue;
+    is_new = is_new || s.element == call.edited() || s.pose.position != s.was;
     circles.push_back(circle_of(s));
-    houses.push_back(&s);
+    bodies.push_back(&s);
   }
-  const bool is_clear = push_circles_apart(circles);
-  for (std::size_t i = 0; i < houses.size(); ++i)
-    if (houses[i]->what == Stands::house && !houses[i]->is_fixed)
-      drop_house(*houses[i], circles[i]);
-  const auto is_free = [&](const Standing& house, bool before_only) {
-    return std::none_of(standings_.begin(), standings_.end(), [&](const Standing& other) {
-      const bool counts =
-          other.what == Stands::house || (other.what == Stands::pine && other.is_fixed);
-      if (!counts || !other.is_present || &other == &house) return false;
-      if (before_only && !other.is_fixed && &other > &house) return false;
-      return circles_meet(circle_of(house), circle_of(other));
-    });
-  };
+  if (!is_new) return;
+  const bool are_clear = push_circles_apart(circles);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i]->what == Stands::house && !bodies[i]->is_fixed)
+      drop_house(*bodies[i], circles[i]);
   for (Standing& s : standings_) {
-    if (s.what != Stands::house) continue;
-    if (!is_clear && s.is_present && !s.is_fixed) s.is_present = is_free(s, true);
-    if (!call.now().present(s.element)) s.is_present = is_free(s, false);
-    if (s.is_fixed) continue;
-    const Hierarchy& h = call.now();
-    s.plinth = plinth_depth(*ground_, s.pose, h.parameter(s.element, HouseParameter::kWidth),
-                            h.parameter(s.element, HouseParameter::kDepth));
+    if (s.what != Stands::house || s.is_fixed) continue;
+    if (!call.now().present(s.element))
+      s.is_present = is_free(s, false);
+    else if (!are_clear && s.is_present)
+      s.is_present = is_free(s, true);
+  }
+}
+
+/// The depth that is needed, where that is another than before.
+void LandscapeGrammar::found_houses(const RuleCall& call) {
+  const Hierarchy& h = call.now();
+  for (Standing& s : standings_) {
+    if (s.what != Stands::house || s.is_fixed) continue;
+    const Pose before{s.was, call.pose_before(s.element).turn};
+    const double needed = plinth_depth(*ground_, h, s.element, s.pose);
+    if (needed != plinth_depth(*ground_before_, h, s.element, before)) s.plinth = needed;
   }
 }
 
@@ -333,40 +335,18 @@ void LandscapeGrammar::size_pines(const RuleCall& call) {
   }
 }
 
-/// Those beside a stone that is moved go with it, the less the further along the path they are; as
-/// far as the next one that an edit holds.
-void LandscapeGrammar::bend_path(std::vector<PathStone>& stones, const Standing& edited,
-                                 double pitch) const {
-  const Vector3d shift = edited.pose.position - edited.was;
-  const double pitches = static_cast<double>(std::count_if(
-      stones.begin(), stones.end(), [](const PathStone& s) { return !s.is_candidate; }));
-  const double follow = (kFollowPitches + kFollowShifts * shift.norm() / pitch) / pitches;
-  double before = follow, after = follow;
-  for (const PathStone& s : stones) {
-    const double away = s.along - edited.along;
-    if (s.is_fixed && away < 0) before = std::min(before, -away);
-    if (s.is_fixed && away > 0) after = std::min(after, away);
-  }
-  for (PathStone& s : stones) {
-    const double away = s.along - edited.along, most = away < 0 ? before : after;
-    if (s.is_fixed || std::abs(away) >= most) continue;
-    const auto place = ground_->below(s.x + falloff(std::abs(away) / most) * shift);
-    if (place) s.x = ground_->at(*place);
-  }
-}
-
 void LandscapeGrammar::lay_path(const RuleCall& call, int path) {
   const Hierarchy& h = call.now();
   const double pitch = h.parameter(path, kPathPitch);
   std::vector<PathStone> stones;
   std::vector<Standing*> standings;
-  const Standing* edited = nullptr;
+  int edited = -1;
   bool changed = pitch != call.parameter_before(path, kPathPitch);
   for (const int e : h.children(path)) {
     const auto found = standing_of_.find(e);
     if (found == standing_of_.end()) continue;
     Standing& s = standings_[found->second];
-    if (e == call.edited()) edited = &s;
+    if (e == call.edited()) edited = static_cast<int>(stones.size());
     changed = changed || e == call.edited() || s.pose.position != s.was;
     standings.push_back(&s);
     stones.push_back({s.along, s.pose.position, s.size,
@@ -378,8 +358,18 @@ void LandscapeGrammar::lay_path(const RuleCall& call, int path) {
     if (!place) return std::nullopt;
     return ground_->at(*place);
   };
-  if (edited != nullptr && edited->pose.position != edited->was) bend_path(stones, *edited, pitch);
+  if (edited >= 0) {
+    const Vector3d shift = standings[edited]->pose.position - standings[edited]->was;
+    bend_path(stones, edited, shift, pitch, on_ground);
+  }
   space_path(stones, pitch, on_ground);
+  // An edit may not break the path, where other edits hold it.
+  const auto broken = edited >= 0 ? broken_step(stones, pitch) : std::nullopt;
+  if (broken)
+    throw Error(
+        "the edit makes a step of the path " + std::to_string(*broken) + " m long",
+        "element '" + h.label(call.edited()) + "'",
+        std::to_string(kLeastStep * pitch) + " to " + std::to_string(kLargestStep * pitch) + " m");
   for (std::size_t i = 0; i < stones.size(); ++i) {
     Standing& s = *standings[i];
     s.size = stones[i].size;
@@ -392,6 +382,12 @@ void LandscapeGrammar::lay_path(const RuleCall& call, int path) {
 }
 
 // ---- Writing -----------------------------------------------------------------------------------
+
+bool place_differs(const Hierarchy& h, const Standing& s) {
+  const int p = place_parameter(s.what);
+  return s.place.triangle != h.parameter(s.element, p) ||
+         s.place.b0 != h.parameter(s.element, p + 1) || s.place.b1 != h.parameter(s.element, p + 2);
+}
 
 bool standing_differs(const Hierarchy& h, const Standing& s) {
   if (s.pose.position != h.position(s.element) ||
@@ -424,9 +420,11 @@ void LandscapeGrammar::holder_down(RuleCall& call) {
       const Standing& s = standings_[found->second];
       if (h.present(e)) {
         (s.is_present ? asked : going).push_back(e);
-      } else if (s.is_present) {
+      } else if (s.is_present || place_differs(h, s)) {
+        // What is not there goes along too, as nobody can ask it.
         call.restore(e);
         write(call, s);
+        if (!s.is_present) call.remove(e);
       }
     }
     std::erase_if(asked,
@@ -487,12 +485,12 @@ void LandscapeGrammar::move_standing(RuleCall& call, int e, Stands what) const {
 void LandscapeGrammar::edit_parameter(RuleCall& call, int e, Stands what) const {
   const Hierarchy& h = call.now();
   const int number = call.delta().parameter;
-  const int editable = what == Stands::stone ? 2 : 3;
+  const int editable = what == Stands::stone ? 1 : 3;
   if (number < 0 || number >= editable)
     throw Error("the parameter is not to be edited", "element '" + h.label(e) + "'",
                 what == Stands::house  ? "width, depth, height"
                 : what == Stands::pine ? "size, radius, height"
-                                       : "size, radius");
+                                       : "size");
   const double by = call.kind() == DeltaKind::extrude ? h.parameter(e, number) : 0;
   call.set_parameter(e, number, by + call.delta().value);
 }
@@ -519,13 +517,25 @@ void LandscapeGrammar::standing_edited(RuleCall& call) {
       return;
   }
   if (what == Stands::house) {
-    const double width = h.parameter(e, HouseParameter::kWidth);
-    const double depth = h.parameter(e, HouseParameter::kDepth);
     const Ground ground = ground_of(h, h.parent(h.parent(e)));
     call.set_parameter(e, HouseParameter::kPlinth,
-                       plinth_depth(ground, h.pose(e), width, depth) + house_radius(width, depth));
+                       plinth_depth(ground, h, e, h.pose(e)) + house_radius(h, e));
   }
   if (call.phase() == Phase::up) call.up(Delta{});
+}
+
+/// Whether a house is too near to a pine.
+bool meets_house(const Hierarchy& h, int pine) {
+  const double keeps =
+      h.parameter(pine, PineParameter::kSize) * h.parameter(pine, PineParameter::kRadius);
+  const SpacedCircle circle{h.position(pine).head<2>(), keeps, true};
+  const int landscape = h.parent(h.parent(pine));
+  for (const int holder : h.children(landscape))
+    for (const int e : h.children(holder)) {
+      if (what_stands(h, e) != Stands::house || !h.present(e)) continue;
+      if (circles_meet(circle, {h.position(e).head<2>(), house_radius(h, e), false})) return true;
+    }
+  return false;
 }
 
 /// The terrain takes along all that stands on it. Houses and pines are in each other's way, so that
@@ -533,21 +543,9 @@ void LandscapeGrammar::standing_edited(RuleCall& call) {
 void LandscapeGrammar::passed_up(RuleCall& call) {
   const Hierarchy& h = call.now();
   const int e = call.elements()[0];
-  bool bounds = has_type(h, e, "path") || has_type(h, e, "grove");
-  if (has_type(h, e, "grove") && call.origin() == Origin::child) {
-    const int pine = call.sender();
-    const double keeps =
-        h.parameter(pine, PineParameter::kSize) * h.parameter(pine, PineParameter::kRadius);
-    const SpacedCircle circle{h.position(pine).head<2>(), keeps, true};
-    for (const int holder : h.children(h.parent(e)))
-      for (const int house : h.children(holder)) {
-        if (what_stands(h, house) != Stands::house || !h.present(house)) continue;
-        const double radius = house_radius(h.parameter(house, HouseParameter::kWidth),
-                                           h.parameter(house, HouseParameter::kDepth));
-        if (circles_meet(circle, {h.position(house).head<2>(), radius, false})) bounds = false;
-      }
-  }
-  if (bounds)
+  const bool is_grove = has_type(h, e, "grove");
+  const bool meets = is_grove && call.origin() == Origin::child && meets_house(h, call.sender());
+  if (has_type(h, e, "path") || (is_grove && !meets))
     call.absorb(call.delta());
   else
     call.up(call.delta());

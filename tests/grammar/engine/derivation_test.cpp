@@ -123,7 +123,9 @@ TEST(GrammarDerivation, ValuesOutOfRangeOrNotFiniteAreErrorsThatNameTheRule) {
     rules.add({"grow", {.type = "bead", .phase = Phase::down}, [value](RuleCall& c) {
                  for (const int bead : c.elements()) c.set_parameter(bead, 0, value);
                }});
-    const std::string message = message_of([&] { derive(h, undo, rules, {2, Delta{}}); });
+    const std::string message = message_of([&] {
+      derive(h, undo, rules, {2, Delta::translate({0, 0, 1})});
+    });
     EXPECT_THAT(message, HasSubstr("rule 'grow', element 'bead-1'"));
     EXPECT_EQ(h.parameter(2, 0), 1.);
   }

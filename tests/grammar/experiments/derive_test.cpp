@@ -17,12 +17,12 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-class DeriveProgram : public test::ScratchFolder {
+class DeriveProgram : public geoprior::test::ScratchFolder {
  protected:
   int derive_words(std::vector<std::string> words) const {
     words.insert(words.begin(), "derive");
-    test::ProgramProcess program([&] { return test::run_as_program(words, {make_topic()}); },
-                                 folder() / "log");
+    geoprior::test::ProgramProcess program(
+        [&] { return geoprior::test::run_as_program(words, {make_topic()}); }, folder() / "log");
     return program.wait();
   }
   [[nodiscard]] std::string log() const { return text(folder() / "log"); }

@@ -22,13 +22,13 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-using test::kStay;
-using test::lattice_set;
-using test::moved_frame;
-using test::moved_state;
-using test::scaled;
-using test::shifted;
-using test::small_tree;
+using samples::kStay;
+using samples::lattice_set;
+using samples::moved_frame;
+using samples::moved_state;
+using samples::scaled;
+using samples::shifted;
+using samples::small_tree;
 
 std::shared_ptr<const SpatialMap> shared(const AffineMap& map) {
   return std::make_shared<AffineMap>(map);

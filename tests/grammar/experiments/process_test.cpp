@@ -33,7 +33,7 @@ std::shared_ptr<GrammarScene> loaded(const GrammarSceneOptions& options) {
 
 test::Recording recorded(const GrammarScene& scene, const GrammarMethodOptions& options = {},
                          const std::optional<State>& from = std::nullopt) {
-  test::Recording sink;
+  geoprior::test::Recording sink;
   RunContext context;
   deforming_process(scene, [&](RunContext& c) {
     return grammar_deformer(scene, options, c);
@@ -54,7 +54,7 @@ std::string refused(const GrammarSceneOptions& options) {
 
 TEST(GrammarProcess, AGestureThatReturnsIsTheIdentityBitForBit) {
   const auto scene = loaded(small_tree_scene());
-  const test::Recording run = recorded(*scene);
+  const geoprior::test::Recording run = recorded(*scene);
   ASSERT_EQ(run.frames.size(), 5U);
   EXPECT_EQ(keys_of(run.frames[4]), keys_of(run.frames[0]));
   EXPECT_NE(keys_of(run.frames[2]), keys_of(run.frames[0]));
@@ -69,8 +69,8 @@ TEST(GrammarProcess, ARunGoesOnFromItsCheckpointInBothModes) {
   for (const auto mode : {GrammarOptions::Mode::from_start, GrammarOptions::Mode::incremental}) {
     GrammarMethodOptions method;
     method.grammar.mode = mode;
-    const test::Recording whole = recorded(*scene, method);
-    const test::Recording rest = recorded(*scene, method, whole.checkpoints.at(2));
+    const geoprior::test::Recording whole = recorded(*scene, method);
+    const geoprior::test::Recording rest = recorded(*scene, method, whole.checkpoints.at(2));
     ASSERT_EQ(rest.frames.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(keys_of(rest.frames[i]), keys_of(whole.frames[3 + i]));
@@ -90,7 +90,7 @@ TEST(GrammarProcess, BaselinesMakeTheSameFrames) {
   const auto scene = loaded(small_tree_scene());
   for (const auto make :
        {nothing_deformer, free_form_deformer, frames_deformer, regenerating_deformer}) {
-    test::Recording sink;
+    geoprior::test::Recording sink;
     RunContext context;
     deforming_process(*scene, [&](RunContext&) {
       return make(*scene);
@@ -107,7 +107,7 @@ TEST(GrammarProcess, ADerivationIsRecordedAsTextAndDrawing) {
   options.edits.push_back({.element = "branch-9", .by = {0.1, 0, 0}});
   GrammarMethodOptions method;
   method.trace = true;
-  const test::Recording run = recorded(*loaded(options), method);
+  const geoprior::test::Recording run = recorded(*loaded(options), method);
   ASSERT_EQ(run.artifacts.size(), 2U);
   EXPECT_EQ(run.artifacts[0].name, "derivation-001.svg");
   EXPECT_EQ(run.artifacts[1].name, "derivation-001.txt");

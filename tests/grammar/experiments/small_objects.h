@@ -12,7 +12,7 @@
 
 /// Objects of a few elements, and what free-form deformation makes of them, for the tests of
 /// measures.
-namespace geoprior::grammar::test {
+namespace geoprior::grammar::samples {
 
 using Eigen::Vector3d;
 
@@ -72,4 +72,4 @@ inline Hierarchy lattice_set(int n) {
   return h;
 }
 
-}  // namespace geoprior::grammar::test
+}  // namespace geoprior::grammar::samples

@@ -18,10 +18,10 @@ namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
-using test::lattice_set;
-using test::moved_state;
-using test::scaled;
-using test::small_tree;
+using samples::lattice_set;
+using samples::moved_state;
+using samples::scaled;
+using samples::small_tree;
 
 /// x' = x + share of the coordinate of that number.
 AffineMap sheared(int coordinate, double share) {

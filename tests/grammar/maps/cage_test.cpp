@@ -65,7 +65,7 @@ TEST(GrammarCage, ReproducesAffineMaps) {
     Cage cage{prism_cage(7, 5, convex ? -1 : 2), {}};
     cage.moved = (cage.rest.V * A.transpose()).rowwise() + b.transpose();
     const CageMap map(cage, 1);
-    for (const Vector3d& x : test::points_in(test::kSampledBox, 300, 1))
+    for (const Vector3d& x : samples::points_in(samples::kSampledBox, 300, 1))
       EXPECT_LT((map.at(x) - (A * x + b)).norm(), convex ? 1e-12 : 1e-9) << x.transpose();
   }
 }
@@ -100,14 +100,14 @@ TEST(GrammarCage, PushesWhatIsInsideInwards) {
 
 TEST(GrammarCage, JacobianByDifferencesIsTheDerivative) {
   const CageMap map(squeezed_cage(), 1);
-  EXPECT_LT(test::jacobian_error(map, test::points_in(test::kSampledBox, 100, 2)), 1e-6);
-  EXPECT_GT(test::least_determinant(map, test::points_in(test::kSampledBox, 100, 3)), 0.2);
+  EXPECT_LT(samples::jacobian_error(map, samples::points_in(samples::kSampledBox, 100, 2)), 1e-6);
+  EXPECT_GT(samples::least_determinant(map, samples::points_in(samples::kSampledBox, 100, 3)), 0.2);
 }
 
 TEST(GrammarCage, GrowsFromRestWithItsFraction) {
   const Cage cage = squeezed_cage();
   const CageMap none(cage, 0), part(cage, 0.25), all(cage, 1);
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 100, 4)) {
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 100, 4)) {
     EXPECT_LT((none.at(x) - x).norm(), 1e-12);
     EXPECT_LT((part.at(x) - x - 0.25 * (all.at(x) - x)).norm(), 1e-12);
   }
@@ -123,7 +123,7 @@ TEST(GrammarCage, HasNoJumpAtThePlanesOfItsTriangles) {
     const Vector3d a = cage.rest.V.row(cage.rest.F(t, 0)), b = cage.rest.V.row(cage.rest.F(t, 1)),
                    c = cage.rest.V.row(cage.rest.F(t, 2));
     const Vector3d normal = (b - a).cross(c - a).normalized();
-    for (const Vector3d& p : test::points_in(test::kSampledBox, 5, static_cast<int>(t))) {
+    for (const Vector3d& p : samples::points_in(samples::kSampledBox, 5, static_cast<int>(t))) {
       const Vector3d on_plane = p - normal.dot(p - a) * normal;
       if (on_plane.head<2>().norm() > 2 || std::abs(on_plane.z() - 4) > 3.5) continue;
       const Vector3d there = map.at(on_plane);

@@ -125,12 +125,13 @@ TEST_F(GrammarGestureFile, RecordedGesturesAreInvertibleAndKeepTheFoot) {
                                                "experiments/grammar/gestures" / name);
     for (const double fraction : {0.3, 0.7, 1.0}) {
       const auto map = map_of(read.gesture, fraction);
-      EXPECT_GT(test::least_determinant(*map, test::points_in(test::kSampledBox, 500, 1)), 0.15)
+      EXPECT_GT(samples::least_determinant(*map, samples::points_in(samples::kSampledBox, 500, 1)),
+                0.15)
           << name;
     }
     const auto map = map_of(read.gesture, 1);
     double largest = 0;
-    for (const Vector3d& x : test::points_in(test::kSampledBox, 200, 2))
+    for (const Vector3d& x : samples::points_in(samples::kSampledBox, 200, 2))
       largest = std::max(largest, (map->at(x) - x).norm());
     EXPECT_GT(largest, 0.5) << name;
     EXPECT_LT(largest, 6) << name;

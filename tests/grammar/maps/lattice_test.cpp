@@ -19,7 +19,7 @@ using geoprior::test::expect_error;
 /// Control points over the box of the samples, x fastest, moved by `shift(position)`.
 template <class Shift>
 Lattice lattice_over_samples(const std::array<int, 3>& points, const Shift& shift) {
-  Lattice out{test::kSampledBox.min(), test::kSampledBox.max(), points, {}};
+  Lattice out{samples::kSampledBox.min(), samples::kSampledBox.max(), points, {}};
   for (int k = 0; k < points[2]; ++k) {
     for (int j = 0; j < points[1]; ++j) {
       for (int i = 0; i < points[0]; ++i) {
@@ -44,7 +44,7 @@ TEST(GrammarLattice, ReproducesAffineMaps) {
   const Lattice lattice =
       lattice_over_samples({5, 4, 7}, [&](const Vector3d& p) -> Vector3d { return A * p + b - p; });
   const LatticeMap map(lattice, 1);
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 500, 1)) {
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 500, 1)) {
     const MappedPoint m = map.with_jacobian(x);
     EXPECT_LT((m.position - (A * x + b)).norm(), 1e-12);
     EXPECT_LT((m.jacobian - A).norm(), 1e-12);
@@ -56,23 +56,23 @@ TEST(GrammarLattice, MiddlePointMovesItsPlaceByAnEighth) {
   Lattice lattice =
       lattice_over_samples({3, 3, 3}, [](const Vector3d&) { return Vector3d(0, 0, 0); });
   lattice.shifts[13] = {1, 2, -3};
-  const Vector3d centre = test::kSampledBox.center();
+  const Vector3d centre = samples::kSampledBox.center();
   const Vector3d shift = LatticeMap(lattice, 1).at(centre) - centre;
   EXPECT_LT((shift - Vector3d(1, 2, -3) / 8).norm(), 1e-15);
 }
 
 TEST(GrammarLattice, JacobianIsTheDerivative) {
   const LatticeMap map(wavy_lattice(), 0.7);
-  Eigen::AlignedBox3d inside = test::kSampledBox;
+  Eigen::AlignedBox3d inside = samples::kSampledBox;
   inside.min().array() += 0.01;
   inside.max().array() -= 0.01;
-  EXPECT_LT(test::jacobian_error(map, test::points_in(inside, 500, 2)), 1e-8);
+  EXPECT_LT(samples::jacobian_error(map, samples::points_in(inside, 500, 2)), 1e-8);
 }
 
 TEST(GrammarLattice, IdentityBitForBitOutsideTheBox) {
   const LatticeMap map(wavy_lattice(), 1);
   const Eigen::AlignedBox3d wide(Vector3d(-9, -9, -6), Vector3d(9, 9, 14));
-  for (const Vector3d& x : test::points_in(wide, 500, 3)) {
+  for (const Vector3d& x : samples::points_in(wide, 500, 3)) {
     if (map.support()->contains(x)) continue;
     EXPECT_EQ(map.at(x), x);
     EXPECT_EQ(map.with_jacobian(x).jacobian, Matrix3d::Identity());
@@ -82,7 +82,7 @@ TEST(GrammarLattice, IdentityBitForBitOutsideTheBox) {
 TEST(GrammarLattice, ShiftGrowsInProportionToTheFraction) {
   const Lattice lattice = wavy_lattice();
   const LatticeMap all(lattice, 1), part(lattice, 0.3);
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 100, 4))
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 100, 4))
     EXPECT_LT((part.at(x) - x - 0.3 * (all.at(x) - x)).norm(), 1e-14);
 }
 

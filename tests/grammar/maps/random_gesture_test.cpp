@@ -19,10 +19,10 @@ constexpr int kGestures = 200;
 
 TEST(GrammarRandomGesture, SameSeedAndNumberSameGesture) {
   for (int i = 0; i < kGestures; ++i) {
-    const Stroke a = random_gesture(7, i, test::kSampledBox).strokes.at(0),
-                 b = random_gesture(7, i, test::kSampledBox).strokes.at(0),
-                 other_number = random_gesture(7, i + 1, test::kSampledBox).strokes.at(0),
-                 other_seed = random_gesture(8, i, test::kSampledBox).strokes.at(0);
+    const Stroke a = random_gesture(7, i, samples::kSampledBox).strokes.at(0),
+                 b = random_gesture(7, i, samples::kSampledBox).strokes.at(0),
+                 other_number = random_gesture(7, i + 1, samples::kSampledBox).strokes.at(0),
+                 other_seed = random_gesture(8, i, samples::kSampledBox).strokes.at(0);
     EXPECT_EQ(a.kind, b.kind);
     EXPECT_EQ(a.path, b.path);
     EXPECT_EQ(a.radius, b.radius);
@@ -35,14 +35,14 @@ TEST(GrammarRandomGesture, SameSeedAndNumberSameGesture) {
 }
 
 TEST(GrammarRandomGesture, SizesAreInProportionToTheBox) {
-  const double diagonal = test::kSampledBox.diagonal().norm();
+  const double diagonal = samples::kSampledBox.diagonal().norm();
   std::array<int, 4> count{};
   for (int i = 0; i < kGestures; ++i) {
-    const Gesture gesture = random_gesture(1, i, test::kSampledBox);
+    const Gesture gesture = random_gesture(1, i, samples::kSampledBox);
     ASSERT_EQ(gesture.strokes.size(), 1u);
     const Stroke& stroke = gesture.strokes[0];
     ++count[static_cast<std::size_t>(stroke.kind)];
-    EXPECT_TRUE(test::kSampledBox.contains(stroke.path.front()));
+    EXPECT_TRUE(samples::kSampledBox.contains(stroke.path.front()));
     EXPECT_GE(stroke.radius, 0.5 * diagonal);
     EXPECT_LE(stroke.radius, 1.2 * diagonal);
     switch (stroke.kind) {
@@ -69,20 +69,21 @@ TEST(GrammarRandomGesture, SizesAreInProportionToTheBox) {
 
 TEST(GrammarRandomGesture, IsInvertible) {
   for (int i = 0; i < kGestures; ++i) {
-    const auto map = map_of(random_gesture(2, i, test::kSampledBox), 1);
-    EXPECT_GT(test::least_determinant(*map, test::points_in(test::kSampledBox, 50, i)), 0.1)
+    const auto map = map_of(random_gesture(2, i, samples::kSampledBox), 1);
+    EXPECT_GT(samples::least_determinant(*map, samples::points_in(samples::kSampledBox, 50, i)),
+              0.1)
         << "gesture " << i;
   }
 }
 
 TEST(GrammarRandomGesture, MovesWhatIsInTheBox) {
   for (int i = 0; i < kGestures; ++i) {
-    const auto map = map_of(random_gesture(3, i, test::kSampledBox), 1);
+    const auto map = map_of(random_gesture(3, i, samples::kSampledBox), 1);
     double largest = 0;
-    for (const Vector3d& x : test::points_in(test::kSampledBox, 50, i))
+    for (const Vector3d& x : samples::points_in(samples::kSampledBox, 50, i))
       largest = std::max(largest, (map->at(x) - x).norm());
     EXPECT_GT(largest, 0) << "gesture " << i;
-    EXPECT_LT(largest, 0.5 * test::kSampledBox.diagonal().norm()) << "gesture " << i;
+    EXPECT_LT(largest, 0.5 * samples::kSampledBox.diagonal().norm()) << "gesture " << i;
   }
 }
 

@@ -9,7 +9,7 @@
 #include "models/grammar/maps/spatial_map.h"
 #include "tests/support/dice.h"
 
-namespace geoprior::grammar::test {
+namespace geoprior::grammar::samples {
 
 inline const Eigen::AlignedBox3d kSampledBox{Eigen::Vector3d(-3, -3, 0), Eigen::Vector3d(3, 3, 8)};
 
@@ -45,4 +45,4 @@ inline double least_determinant(const SpatialMap& map, const std::vector<Eigen::
   return least;
 }
 
-}  // namespace geoprior::grammar::test
+}  // namespace geoprior::grammar::samples

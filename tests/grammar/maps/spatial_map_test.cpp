@@ -71,7 +71,7 @@ TEST(GrammarMaps, ComposedMapFollowsTheChainRule) {
   const auto first = grabbing_map({0, 0, 4}, {1, 0, 4.5}, 4);
   const auto second = grabbing_map({1, 1, 3}, {0, 2, 3}, 3);
   const ComposedMap both(first, second);
-  EXPECT_LT(test::jacobian_error(both, test::points_in(test::kSampledBox, 300, 2)), 1e-8);
+  EXPECT_LT(samples::jacobian_error(both, samples::points_in(samples::kSampledBox, 300, 2)), 1e-8);
   const AlignedBox3d support = both.support().value();
   EXPECT_TRUE(support.contains(first->support().value()));
   EXPECT_TRUE(support.contains(second->support().value()));
@@ -87,16 +87,16 @@ TEST(GrammarMaps, ReachesWhatItsSupportMeets) {
   const auto map = grabbing_map({0, 0, 0}, {0.1, 0, 0}, 1);
   EXPECT_TRUE(reaches(*map, {Vector3d(0.5, 0, 0), Vector3d(3, 1, 1)}));
   EXPECT_FALSE(reaches(*map, {Vector3d(1.5, 0, 0), Vector3d(3, 1, 1)}));
-  EXPECT_FALSE(reaches(*map_of({}, 1), test::kSampledBox));
-  EXPECT_TRUE(reaches(AffineMap(Eigen::Affine3d::Identity()), test::kSampledBox));
+  EXPECT_FALSE(reaches(*map_of({}, 1), samples::kSampledBox));
+  EXPECT_TRUE(reaches(AffineMap(Eigen::Affine3d::Identity()), samples::kSampledBox));
 }
 
 TEST(GrammarMaps, InverseLeadsBackToRoundOff) {
   for (int i = 0; i < 40; ++i) {
     const std::shared_ptr<const SpatialMap> map =
-        map_of(random_gesture(3, i, test::kSampledBox), 1);
+        map_of(random_gesture(3, i, samples::kSampledBox), 1);
     const InverseMap inverse(map);
-    for (const Vector3d& x : test::points_in(test::kSampledBox, 60, i)) {
+    for (const Vector3d& x : samples::points_in(samples::kSampledBox, 60, i)) {
       EXPECT_LT((inverse.at(map->at(x)) - x).norm(), 1e-12) << "gesture " << i;
       EXPECT_LT((map->at(inverse.at(x)) - x).norm(), 1e-12) << "gesture " << i;
     }
@@ -106,7 +106,7 @@ TEST(GrammarMaps, InverseLeadsBackToRoundOff) {
 TEST(GrammarMaps, InverseJacobianIsTheInverseMatrix) {
   const auto map = grabbing_map({0, 0, 4}, {2, 0, 4.5}, 5);
   const InverseMap inverse(map);
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 100, 5)) {
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 100, 5)) {
     const MappedPoint there = map->with_jacobian(x);
     const Matrix3d both = inverse.with_jacobian(there.position).jacobian * there.jacobian;
     EXPECT_LT((both - Matrix3d::Identity()).norm(), 1e-11);
@@ -115,7 +115,7 @@ TEST(GrammarMaps, InverseJacobianIsTheInverseMatrix) {
 
 TEST(GrammarMaps, InverseIsTheIdentityBitForBitOutsideTheSupport) {
   const InverseMap inverse(grabbing_map({0, 0, 4}, {2, 0, 4.5}, 3));
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 300, 6)) {
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 300, 6)) {
     if (inverse.support()->contains(x)) continue;
     EXPECT_EQ(inverse.at(x), x);
     EXPECT_EQ(inverse.with_jacobian(x).jacobian, Matrix3d::Identity());

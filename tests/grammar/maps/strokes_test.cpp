@@ -56,9 +56,9 @@ TEST(GrammarStrokes, FalloffIsOneAtTheToolAndFlatAtBothEnds) {
 }
 
 TEST(GrammarStrokes, JacobianIsTheDerivative) {
-  const std::vector<Vector3d> points = test::points_in(test::kSampledBox, 400, 1);
+  const std::vector<Vector3d> points = samples::points_in(samples::kSampledBox, 400, 1);
   for (const Stroke& stroke : strokes_of_all_kinds())
-    EXPECT_LT(test::jacobian_error(map_of_stroke(stroke), points), 1e-7);
+    EXPECT_LT(samples::jacobian_error(map_of_stroke(stroke), points), 1e-7);
 }
 
 TEST(GrammarStrokes, IdentityBitForBitOutsideTheSupport) {
@@ -66,7 +66,7 @@ TEST(GrammarStrokes, IdentityBitForBitOutsideTheSupport) {
   for (const Stroke& stroke : strokes_of_all_kinds()) {
     const StrokeMap map = map_of_stroke(stroke);
     int outside = 0;
-    for (const Vector3d& x : test::points_in(wide, 1000, 2)) {
+    for (const Vector3d& x : samples::points_in(wide, 1000, 2)) {
       if (map.support()->contains(x)) continue;
       ++outside;
       EXPECT_EQ(map.at(x), x);
@@ -87,9 +87,9 @@ TEST(GrammarStrokes, SupportHoldsWhatRoundingPutsIntoTheBall) {
 }
 
 TEST(GrammarStrokes, NeverTurnsSpaceInsideOut) {
-  const std::vector<Vector3d> points = test::points_in(test::kSampledBox, 2000, 3);
+  const std::vector<Vector3d> points = samples::points_in(samples::kSampledBox, 2000, 3);
   for (const Stroke& stroke : strokes_of_all_kinds())
-    EXPECT_GT(test::least_determinant(map_of_stroke(stroke), points), 0.01);
+    EXPECT_GT(samples::least_determinant(map_of_stroke(stroke), points), 0.01);
 }
 
 /// The bounds of the header, by kind: 1 - 0.2 * 2.11, e^-1.2, 1 and 1 - 0.3.
@@ -99,9 +99,9 @@ TEST(GrammarStrokes, DabsKeepTheirDistanceFromAFold) {
     std::vector<Dab> dabs;
     append_dabs(stroke, 1, dabs);
     for (const Dab& dab : dabs)
-      EXPECT_GT(
-          test::least_determinant(StrokeMap({dab}), test::points_in(test::kSampledBox, 2000, 4)),
-          least[static_cast<std::size_t>(stroke.kind)]);
+      EXPECT_GT(samples::least_determinant(StrokeMap({dab}),
+                                           samples::points_in(samples::kSampledBox, 2000, 4)),
+                least[static_cast<std::size_t>(stroke.kind)]);
   }
 }
 
@@ -123,7 +123,7 @@ TEST(GrammarStrokes, TwistTurnsByItsAmountAtTheToolAndKeepsVolume) {
   const StrokeMap map = map_of_stroke(stroke);
   const Eigen::AngleAxisd turn(2, stroke.axis.normalized());
   EXPECT_LT((map.with_jacobian(kTool).jacobian - turn.toRotationMatrix()).norm(), 1e-12);
-  for (const Vector3d& x : test::points_in(test::kSampledBox, 500, 5)) {
+  for (const Vector3d& x : samples::points_in(samples::kSampledBox, 500, 5)) {
     EXPECT_NEAR(map.with_jacobian(x).jacobian.determinant(), 1, 1e-12);
     EXPECT_NEAR((map.at(x) - kTool).norm(), (x - kTool).norm(), 1e-13);
   }
@@ -149,7 +149,7 @@ TEST(GrammarStrokes, BendTurnsBothSidesByAtMostItsAmount) {
 
 TEST(GrammarStrokes, MovesOnContinuouslyWithItsFraction) {
   constexpr double kStep = 1e-6;
-  const std::vector<Vector3d> points = test::points_in(test::kSampledBox, 30, 6);
+  const std::vector<Vector3d> points = samples::points_in(samples::kSampledBox, 30, 6);
   for (const Stroke& stroke : strokes_of_all_kinds()) {
     for (double f = 0; f + kStep <= 1; f += 0.0099999) {
       const StrokeMap before = map_of_stroke(stroke, f), after = map_of_stroke(stroke, f + kStep);
