@@ -2,7 +2,7 @@
 #include <string>
 
 #include "experiments/grammar/files/gesture_file.h"
-#include "models/grammar/objects/arm.h"
+#include "experiments/grammar/scene/arm.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "solvers/grammar/script/lua_rules.h"
 #include "tests/fuzz/allow_error.h"

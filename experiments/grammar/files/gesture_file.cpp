@@ -44,8 +44,8 @@ void describe(OptionVisitor& v, StrokeTable& stroke) {
           {.doc = "where the tool is, along x: two points or more for grab",
            .unit = "m",
            .required = true});
-  v.value("path_y", stroke.y, {.doc = "the same along y", .unit = "m", .required = true});
-  v.value("path_z", stroke.z, {.doc = "the same along z", .unit = "m", .required = true});
+  v.value("path_y", stroke.y, {.doc = "where the tool is, along y", .unit = "m", .required = true});
+  v.value("path_z", stroke.z, {.doc = "where the tool is, along z", .unit = "m", .required = true});
   v.value(
       "radius", stroke.radius,
       {.doc = "how far the tool reaches", .unit = "m", .min = 1e-6, .max = 1e6, .required = true});
@@ -74,9 +74,10 @@ void describe(OptionVisitor& v, LatticeTable& lattice) {
 void describe(OptionVisitor& v, CageTable& cage) {
   v.value("rest", cage.rest,
           {.doc = "closed mesh around the object", .required = true, .named = Named::file});
-  v.value(
-      "moved", cage.moved,
-      {.doc = "the same mesh where the gesture takes it", .required = true, .named = Named::file});
+  v.value("moved", cage.moved,
+          {.doc = "the mesh around the object, where the gesture takes it",
+           .required = true,
+           .named = Named::file});
 }
 
 void describe(OptionVisitor& v, GestureTable& table) {

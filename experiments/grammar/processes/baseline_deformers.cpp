@@ -2,9 +2,8 @@
 
 #include "baselines/grammar/free_form.h"
 #include "baselines/grammar/instance_frames.h"
-#include "baselines/grammar/optimum/building.h"
-#include "baselines/grammar/optimum/sets.h"
-#include "baselines/grammar/optimum/tree.h"
+#include "baselines/grammar/nothing.h"
+#include "baselines/grammar/optimum/optimum.h"
 #include "baselines/grammar/regeneration.h"
 #include "core/error.h"
 #include "experiments/grammar/processes/methods.h"
@@ -53,7 +52,7 @@ class NothingDeformer final : public Deformer {
   explicit NothingDeformer(const GrammarScene& scene) : scene_(scene) {}
   void edit(const SceneEdit&, RunContext&) override {}
   void deform(std::size_t, RunContext&) override {}
-  [[nodiscard]] const Hierarchy& shown() const override { return scene_.rest; }
+  [[nodiscard]] const Hierarchy& shown() const override { return nothing(scene_.rest); }
 
  private:
   const GrammarScene& scene_;
@@ -144,22 +143,7 @@ class OptimumDeformer final : public Deformer {
     }
     const geoprior::Phase phase(context, "optimise");
     const Hierarchy& rest = base_ ? *base_ : scene_.rest;
-    switch (scene_.kind) {
-      case Object::tree:
-        result_ = optimise_tree(rest, grammar_.state(), *map);
-        return;
-      case Object::building:
-        result_ = optimise_building(rest, grammar_.state(), *map);
-        return;
-      case Object::surface_set:
-      case Object::volume_set:
-      case Object::forest:
-        result_ = optimise_set(rest, grammar_.state(), *map);
-        return;
-      default:
-        throw Error("has no optimum", "object '" + scene_.object + "'",
-                    "tree, building, surface-set, volume-set, forest");
-    }
+    result_ = optimise_object(rest, grammar_.state(), *map);
   }
   [[nodiscard]] const Hierarchy& shown() const override {
     return result_ ? result_->state : grammar_.state();

@@ -65,7 +65,8 @@ void describe(OptionVisitor& v, EditOptions& options) {
 void describe(OptionVisitor& v, RandomGestureOptions& options) {
   v.value("count", options.count,
           {.doc = "random gestures, a frame each", .min = 1, .max = 100000});
-  v.value("first", options.first, {.doc = "number of the first of them", .min = 0, .max = 1000000});
+  v.value("first", options.first,
+          {.doc = "number of the first random gesture", .min = 0, .max = 1000000});
 }
 
 void describe(OptionVisitor& v, GestureOptions& options) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/options.h"
-#include "models/grammar/objects/arm.h"
-#include "models/grammar/objects/building.h"
+#include "experiments/grammar/scene/arm.h"
+#include "experiments/grammar/scene/building.h"
 #include "models/grammar/objects/forest.h"
 #include "models/grammar/objects/landscape.h"
 #include "models/grammar/objects/surface_set.h"

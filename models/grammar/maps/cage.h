@@ -1,6 +1,7 @@
 #pragma once
 
-#include "models/grammar/maps/gesture.h"
+#include "models/grammar/maps/spatial_map.h"
+#include "models/grammar/maps/tools.h"
 
 namespace geoprior::grammar {
 

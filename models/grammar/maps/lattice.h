@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "models/grammar/maps/gesture.h"
 #include "models/grammar/maps/spatial_map.h"
+#include "models/grammar/maps/tools.h"
 
 namespace geoprior::grammar {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "models/grammar/maps/gesture.h"
 #include "models/grammar/maps/spatial_map.h"
+#include "models/grammar/maps/tools.h"
 
 namespace geoprior::grammar {
 

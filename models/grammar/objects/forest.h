@@ -15,7 +15,7 @@ struct ForestOptions {
   int elements = 1000;
   double distance = 3;  ///< mean distance of neighbours; least one where they keep apart (m)
   bool apart = false;   ///< whether they keep apart
-  double aspect = 1;    ///< depth of the ground over its width
+  double aspect = 1;
 };
 void describe(OptionVisitor& v, ForestOptions& options);
 

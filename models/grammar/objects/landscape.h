@@ -19,7 +19,7 @@ struct LandscapeOptions {
   double width = 60, depth = 60;  ///< of the ground, along x and y (m)
   double relief = 5;              ///< height of the highest place over the lowest (m)
   int houses = 8;
-  double woods = 0.45;   ///< part of the ground that is wooded
+  double woods = 0.45;
   double spacing = 2.6;  ///< least distance of pines of full size (m)
   double pitch = 0.9;    ///< distance of consecutive stones (m)
 };

@@ -13,11 +13,11 @@ namespace geoprior::grammar {
 /// A broad-leaved tree: a trunk that goes on from segment to segment, from which limbs leave, from
 /// these boughs, from these twigs, each a chain of branches.
 struct TreeOptions {
-  double height = 8;     ///< m
-  int levels = 3;        ///< above the trunk
-  int branches = 300;    ///< of all levels, the most
-  double spread = 1.0;   ///< width of the crown over the height of the tree
-  double trunk = 0.018;  ///< radius of the trunk at the ground over the height of the tree
+  double height = 8;   ///< m
+  int levels = 3;      ///< above the trunk
+  int branches = 300;  ///< of all levels, the most
+  double spread = 1.0;
+  double trunk = 0.018;
   double wobble = 0.16;  ///< by how much a chain turns from branch to branch (rad)
 };
 void describe(OptionVisitor& v, TreeOptions& options);

@@ -205,7 +205,7 @@ int RuleScript::prepare(lua_State* L) {
 
 RuleScript::RuleScript(const std::string& text, const std::string& name, const LuaLimits& limits,
                        std::uint64_t seed, ScriptConstants constants)
-    : sandbox_(name, limits, seed), constants_(std::move(constants)) {
+    : sandbox_(name, limits, seed, &open_script_library), constants_(std::move(constants)) {
   sandbox_.binding = &binding_;
   lua_State* L = sandbox_.state();
   try {

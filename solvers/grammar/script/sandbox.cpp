@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "solvers/grammar/script/library.h"
 
 namespace geoprior::grammar {
 namespace {
@@ -92,13 +91,17 @@ struct LuaSandboxHooks {
     return 1;
   }
 
+  /// Its argument is the function that opens the library.
   static int set_up(lua_State* L) {
-    open_script_library(L);
+    const auto open = *static_cast<void (**)(lua_State*)>(lua_touserdata(L, 1));
+    lua_settop(L, 0);
+    open(L);
     return 0;
   }
 };
 
-LuaSandbox::LuaSandbox(std::string name, const LuaLimits& limits, std::uint64_t seed)
+LuaSandbox::LuaSandbox(std::string name, const LuaLimits& limits, std::uint64_t seed,
+                       void (*open_library)(lua_State*))
     : name_(std::move(name)), limits_(limits), seed_(seed), random_(seed, "grammar script") {
   budget_ = std::numeric_limits<double>::infinity();
   lua_State* L = lua_newstate(&LuaSandboxHooks::allocate, this);
@@ -106,7 +109,8 @@ LuaSandbox::LuaSandbox(std::string name, const LuaLimits& limits, std::uint64_t 
   L_ = L;
   *static_cast<LuaSandbox**>(lua_getextraspace(L)) = this;
   lua_pushcfunction(L, &LuaSandboxHooks::set_up);
-  if (lua_pcall(L, 0, 0, 0) == LUA_OK) return;
+  lua_pushlightuserdata(L, &open_library);
+  if (lua_pcall(L, 1, 0, 0) == LUA_OK) return;
   lua_close(L);
   throw Error("the library does not fit in " + std::to_string(limits_.memory) + " bytes", name_);
 }

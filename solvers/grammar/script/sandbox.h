@@ -45,8 +45,10 @@ class LuaSandbox {
   /// Longest text that a script may make (bytes): comparing two texts is one instruction.
   static constexpr std::size_t kLongestText = 16384;
 
-  /// @param name  of the script's file, for messages
-  LuaSandbox(std::string name, const LuaLimits& limits, std::uint64_t seed);
+  /// @param name          of the script's file, for messages
+  /// @param open_library  makes what scripts have of Lua's library (library.h); called protected
+  LuaSandbox(std::string name, const LuaLimits& limits, std::uint64_t seed,
+             void (*open_library)(lua_State*));
   ~LuaSandbox();
   LuaSandbox(const LuaSandbox&) = delete;
   LuaSandbox& operator=(const LuaSandbox&) = delete;

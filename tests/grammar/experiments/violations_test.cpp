@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "models/grammar/objects/building.h"
+#include "experiments/grammar/scene/building.h"
 #include "models/grammar/objects/tree.h"
 #include "tests/grammar/experiments/small_objects.h"
 

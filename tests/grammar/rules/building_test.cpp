@@ -1,4 +1,4 @@
-#include "models/grammar/objects/building.h"
+#include "experiments/grammar/scene/building.h"
 
 #include <gtest/gtest.h>
 

@@ -106,6 +106,15 @@ double deviation(const Hierarchy& rest, const Hierarchy& h, const SpatialMap& ma
   return std::sqrt(sum / count);
 }
 
+int nearest_pine_to(const Hierarchy& h, int pine) {
+  const std::vector<int> pines = standing_of_type(h, "pine");
+  const auto distance = [&](int e) {
+    return e == pine ? 1e9 : (h.position(e) - h.position(pine)).norm();
+  };
+  return *std::min_element(pines.begin(), pines.end(),
+                           [&](int a, int b) { return distance(a) < distance(b); });
+}
+
 TEST(GrammarLandscapeRules, AllConstraintsHoldAndTheMapIsFollowed) {
   const Hierarchy rest = make_landscape({}, 1);
   const auto box = box_of(rest);
@@ -141,7 +150,7 @@ TEST(GrammarLandscapeRules, WhatAGestureDoesNotReachStays) {
 
 TEST(GrammarLandscapeRules, HousesThatAreBroughtTogetherAreMovedApart) {
   const Hierarchy rest = make_landscape({}, 1);
-  const auto map = std::make_shared<AffineMap>(Eigen::Affine3d(Eigen::Scaling(0.75, 0.9, 1.0)));
+  const auto map = std::make_shared<AffineMap>(Eigen::Affine3d(Eigen::Scaling(0.6, 0.7, 1.0)));
   const Hierarchy h = deformed(rest, map);
   expect_kept(h, "squeezed");
   expect_path_kept(h, "squeezed");
@@ -170,13 +179,14 @@ TEST(GrammarLandscapeRules, NothingPopsFromFrameToFrame) {
 TEST(GrammarLandscapeRules, AMovedPineStaysOnTheGroundAndTheGroveBoundsIt) {
   const Hierarchy rest = make_landscape({}, 1);
   DeformationGrammar grammar(rest, landscape_rules(), {});
-  const int pine = standing_of_type(rest, "pine")[4], other = standing_of_type(rest, "pine")[9];
+  const int pine = standing_of_type(rest, "pine")[4], other = nearest_pine_to(rest, pine);
   Vector3d shift = 0.9 * (rest.position(other) - rest.position(pine));
   shift.z() += 4;
   const auto report = grammar.edit({pine, Delta::translate(shift)}, Tag{1, Tag::Follow::rigid});
   const Hierarchy& h = grammar.state();
   EXPECT_EQ(h.type(report.turned_at).name, "grove");
   expect_kept(h, "edited");
+  EXPECT_FALSE(h.present(other) && h.parameter(other, PineParameter::kSize) == 1);
   EXPECT_EQ(h.parameter(pine, PineParameter::kSize), 1);
   EXPECT_NEAR((h.position(pine) - rest.position(pine) - shift).head<2>().norm(), 0, 1e-9);
   for (const char* type : {"house", "stone", "terrain"})

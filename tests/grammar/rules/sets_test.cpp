@@ -94,6 +94,14 @@ int pairs_too_close(const Hierarchy& h) {
   return out;
 }
 
+int nearest_element(const Hierarchy& h, int element) {
+  const auto distance = [&](int e) {
+    return e == element || !h.present(e) ? 1e9 : (h.position(e) - h.position(element)).norm();
+  };
+  return *std::min_element(h.children(0).begin(), h.children(0).end(),
+                           [&](int a, int b) { return distance(a) < distance(b); });
+}
+
 /// Root mean square over the elements that are still there of that over their key points.
 double deviation_in_set(const Hierarchy& rest, const Hierarchy& h, const SpatialMap& map) {
   double sum = 0;
@@ -238,7 +246,7 @@ TEST(GrammarSetRules, NeighboursMakeRoomForAnEditedElement) {
   for (const Hierarchy& rest : sets()) {
     Hierarchy h = rest;
     Transaction undo(h);
-    const int e = h.children(0)[5], other = h.children(0)[6];
+    const int e = h.children(0)[5], other = nearest_element(h, e);
     const Vector3d shift = 0.7 * (h.position(other) - h.position(e));
     derive(h, undo, set_rules(), {e, Delta::translate(shift)});
     EXPECT_EQ(h.parameter(e, 0), 1);

@@ -1,4 +1,4 @@
-#include "models/grammar/objects/arm.h"
+#include "experiments/grammar/scene/arm.h"
 
 #include <array>
 
