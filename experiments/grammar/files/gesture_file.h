@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "testbed/topic.h"
 
 namespace geoprior::grammar {

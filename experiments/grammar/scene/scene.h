@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/grammar/maps/gesture.h"
 #include "experiments/grammar/scene/options.h"
 #include "models/grammar/hierarchy/hierarchy.h"
-#include "models/grammar/maps/gesture.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "testbed/topic.h"
 

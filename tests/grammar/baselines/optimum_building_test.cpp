@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "baselines/grammar/optimum/building.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "experiments/grammar/scene/building.h"
-#include "models/grammar/maps/gesture.h"
 #include "models/grammar/objects/building_layout.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "solvers/grammar/rules/rules.h"

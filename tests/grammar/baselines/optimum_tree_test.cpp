@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "baselines/grammar/optimum/tree.h"
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/objects/tree.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "solvers/grammar/rules/rules.h"

@@ -1,6 +1,6 @@
 // Deformation by the mean value coordinates of a closed cage.
 
-#include "models/grammar/maps/cage.h"
+#include "experiments/grammar/maps/cage.h"
 
 #include <gtest/gtest.h>
 

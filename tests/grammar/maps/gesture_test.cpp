@@ -1,6 +1,6 @@
 // Gestures over time: what a fraction of them is, and how they are drawn.
 
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 
 #include <gtest/gtest.h>
 

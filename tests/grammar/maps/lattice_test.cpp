@@ -1,6 +1,6 @@
 // Free-form deformation by a box of control points.
 
-#include "models/grammar/maps/lattice.h"
+#include "experiments/grammar/maps/lattice.h"
 
 #include <gtest/gtest.h>
 

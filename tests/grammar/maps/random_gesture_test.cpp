@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "tests/grammar/maps/sampled_map.h"
 #include "tests/testbed/scratch_folder.h"
 

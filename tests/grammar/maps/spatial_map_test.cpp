@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/maps/strokes.h"
 #include "tests/grammar/maps/sampled_map.h"
 #include "tests/testbed/scratch_folder.h"

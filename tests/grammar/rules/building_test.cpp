@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/objects/building_layout.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "solvers/grammar/rules/rules.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/objects/spacing.h"
 #include "solvers/grammar/grammar.h"
 #include "solvers/grammar/rules/rules.h"

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/objects/forest.h"
 #include "models/grammar/objects/spacing.h"
 #include "models/grammar/objects/surface_set.h"

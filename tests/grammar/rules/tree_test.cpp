@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 #include "solvers/grammar/engine/derivation.h"
 #include "solvers/grammar/rules/rules.h"
 

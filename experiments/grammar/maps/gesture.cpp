@@ -1,4 +1,4 @@
-#include "models/grammar/maps/gesture.h"
+#include "experiments/grammar/maps/gesture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "models/grammar/maps/cage.h"
-#include "models/grammar/maps/lattice.h"
+#include "experiments/grammar/maps/cage.h"
+#include "experiments/grammar/maps/lattice.h"
 #include "models/grammar/maps/strokes.h"
 
 namespace geoprior::grammar {

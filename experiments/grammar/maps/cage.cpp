@@ -1,4 +1,4 @@
-#include "models/grammar/maps/cage.h"
+#include "experiments/grammar/maps/cage.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "models/grammar/maps/lattice.h"
+#include "experiments/grammar/maps/lattice.h"
 
 #include <array>
 #include <cmath>
