@@ -326,6 +326,33 @@ void add_assembly(std::map<std::string, NamedFile>& files) {
       "count = 1"};
 }
 
+void add_grammar(std::map<std::string, NamedFile>& files) {
+  const auto stroke = writes("mine.gesture.toml", [](bool changed) {
+    return std::string("[[stroke]]\nkind = \"grab\"\npath_x = [0.5, ") + (changed ? "0.6" : "0.7") +
+           "]\npath_y = [0, 0]\npath_z = [0, 0.1]\nradius = 1\n";
+  });
+  const std::string pulled =
+      "object = \"arm\"\ngesture = { file = \"mine.gesture.toml\", steps = 1 }\n";
+  files["grammar gesture.file"] = {stroke, pulled, {"mine.gesture.toml"}, "free-form"};
+  files["grammar rules"] = {
+      [stroke](const fs::path& folder, bool changed) {
+        stroke(folder, false);
+        write_text(
+            folder / "mine.lua",
+            std::string("rule{ name = \"along z\", type = \"arm\", phase = \"down\", apply = "
+                        "function(b) b:set_position(1, 0, 0, ") +
+                (changed ? "0.2" : "0.1") + ") end }\n");
+      },
+      pulled + "rules = \"mine.lua\"\n",
+      {"mine.lua"},
+      "grammar",
+      "rules = \"script\""};
+  files["grammar imported.file"] = {write_square,
+                                    "object = \"imported\"\nimported = { file = \"my.glb\" }\n",
+                                    {"my.glb"},
+                                    "nothing"};
+}
+
 }  // namespace
 
 const std::map<std::string, NamedFile>& named_files() {
@@ -337,6 +364,7 @@ const std::map<std::string, NamedFile>& named_files() {
     add_paper_and_sound(made);
     add_skinning_and_sketch(made);
     add_assembly(made);
+    add_grammar(made);
     return made;
   }();
   return files;
