@@ -52,12 +52,10 @@ std::vector<MethodEntry> methods() {
           [](const S& scene, const RigidAsPossibleOptions& options, RunContext&) {
             return rigid_deformer(scene, options);
           }),
-      deformer_entry<None>("optimum", true,
-                           "all of the object at once: nearest to the map under the constraints",
-                           "non-linear least squares (Ceres)",
-                           [](const S& scene, const None&, RunContext& context) {
-                             return optimum_deformer(scene, context);
-                           }),
+      deformer_entry<None>(
+          "optimum", true, "all of the object at once: nearest to the map under the constraints",
+          "non-linear least squares (Ceres)",
+          [](const S& scene, const None&, RunContext&) { return optimum_deformer(scene); }),
       deformer_entry<None>(
           "regeneration", true, "the procedure again, with the sizes that fit the map best",
           "procedural modelling",

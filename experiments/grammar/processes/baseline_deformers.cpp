@@ -22,28 +22,27 @@ class PlainDeformer : public Deformer {
   void edit(const SceneEdit& edit, RunContext&) override {
     derive(base_, undo_, no_rules_, edit.wish);
     if (edit.tag) base_.set_tag(edit.wish.element, *edit.tag);
-    edited_ = true;
+    deformed_ = false;
   }
-  void deform(std::size_t step, RunContext& context) override {
-    edited_ = false;
-    map_ = scene_.asked_map(step);
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map,
+              RunContext& context) override {
+    deformed_ = true;
     const geoprior::Phase phase(context, "deform");
-    make(*map_);
+    make(*map);
   }
   [[nodiscard]] const Hierarchy& shown() const override { return base_; }
 
  protected:
   virtual void make(const SpatialMap& map) = 0;
-  [[nodiscard]] bool shows_base() const { return edited_ || map_ == nullptr; }
+  [[nodiscard]] bool shows_base() const { return !deformed_; }
 
   const GrammarScene& scene_;
   Hierarchy base_;
-  std::shared_ptr<const SpatialMap> map_;
 
  private:
   RuleSet no_rules_;
   Transaction undo_;
-  bool edited_ = false;
+  bool deformed_ = false;  ///< rather than edited, last
 };
 
 /// Ignores edits, too.
@@ -51,7 +50,7 @@ class NothingDeformer final : public Deformer {
  public:
   explicit NothingDeformer(const GrammarScene& scene) : scene_(scene) {}
   void edit(const SceneEdit&, RunContext&) override {}
-  void deform(std::size_t, RunContext&) override {}
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>&, RunContext&) override {}
   [[nodiscard]] const Hierarchy& shown() const override { return nothing(scene_.rest); }
 
  private:
@@ -127,7 +126,7 @@ class RegeneratingDeformer final : public HierarchyDeformer {
 
 class OptimumDeformer final : public Deformer {
  public:
-  OptimumDeformer(const GrammarScene& scene, RunContext&)
+  explicit OptimumDeformer(const GrammarScene& scene)
       : scene_(scene), grammar_(scene.rest, object_rules(), {}) {}
 
   void edit(const SceneEdit& edit, RunContext&) override {
@@ -135,8 +134,8 @@ class OptimumDeformer final : public Deformer {
     base_ = grammar_.state();
     result_.reset();
   }
-  void deform(std::size_t step, RunContext& context) override {
-    const auto map = scene_.asked_map(step);
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map,
+              RunContext& context) override {
     {
       const geoprior::Phase phase(context, "derive");
       grammar_.gesture(scene_.gesture_element, map, map);
@@ -187,8 +186,8 @@ std::unique_ptr<Deformer> regenerating_deformer(const GrammarScene& scene) {
   return std::make_unique<RegeneratingDeformer>(scene);
 }
 
-std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene, RunContext& context) {
-  return std::make_unique<OptimumDeformer>(scene, context);
+std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene) {
+  return std::make_unique<OptimumDeformer>(scene);
 }
 
 }  // namespace geoprior::grammar

@@ -55,8 +55,9 @@ class DeformingModel final : public FrameModel {
       method_->edit(edit_of(frame), context);
       return;
     }
-    require_invertible(*scene_.asked_map(frame), scene_.rest, frame);
-    method_->deform(frame, context);
+    const auto map = scene_.asked_map(frame);
+    require_invertible(*map, scene_.rest, frame);
+    method_->deform(frame, map, context);
   }
 
   void record(int frame, FrameSink& sink, RunContext&) override {

@@ -18,8 +18,9 @@ class Deformer {
  public:
   virtual ~Deformer() = default;
   virtual void edit(const SceneEdit& edit, RunContext& context) = 0;
-  /// A step of the scene that has a map.
-  virtual void deform(std::size_t step, RunContext& context) = 0;
+  /// A step of the scene that has a map: `map`, from the state after the edits.
+  virtual void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& map,
+                      RunContext& context) = 0;
 
   /// What is shown, and what is known of it.
   [[nodiscard]] virtual const Hierarchy& shown() const = 0;
@@ -31,8 +32,7 @@ class Deformer {
   virtual void add_parts(Frame& /*frame*/) const {}
   /// Files beside the frame.
   [[nodiscard]] virtual std::vector<Artifact> artifacts(int /*frame*/) const { return {}; }
-  /// Whether the next step needs more than the state after the edits; such a method saves it.
-  [[nodiscard]] virtual bool remembers_steps() const { return false; }
+  /// What the next step needs beside the state after the edits.
   virtual void save(StateWriter& /*out*/) const {}
   virtual void load(StateReader& /*in*/) {}
 };

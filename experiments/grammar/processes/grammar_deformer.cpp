@@ -35,8 +35,8 @@ class RuleDeformer final : public Deformer {
     const geoprior::Phase phase(context, "derive");
     report_ = grammar_.edit(edit.wish, edit.tag, options_.trace);
   }
-  void deform(std::size_t step, RunContext& context) override {
-    const auto from_start = scene_.asked_map(step);
+  void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& from_start,
+              RunContext& context) override {
     const bool anew = options_.grammar.mode == GrammarOptions::Mode::from_start;
     const auto from_last = anew ? from_start : scene_.asked_since(step);
     const geoprior::Phase phase(context, "derive");
@@ -60,13 +60,14 @@ class RuleDeformer final : public Deformer {
     if (!options_.trace) return {};
     return derivation_files(grammar_.state(), report_, frame);
   }
-  [[nodiscard]] bool remembers_steps() const override {
-    return options_.grammar.mode == GrammarOptions::Mode::incremental;
-  }
   void save(StateWriter& out) const override;
   void load(StateReader& in) override;
 
  private:
+  [[nodiscard]] bool remembers_steps() const {
+    return options_.grammar.mode == GrammarOptions::Mode::incremental;
+  }
+
   const GrammarScene& scene_;
   GrammarMethodOptions options_;
   DeformationGrammar grammar_;

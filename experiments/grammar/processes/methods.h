@@ -40,6 +40,6 @@ std::unique_ptr<Deformer> rigid_deformer(const GrammarScene& scene,
 std::unique_ptr<Deformer> regenerating_deformer(const GrammarScene& scene);
 /// Begins with what the grammar makes, whose children it keeps.
 /// @throws Error  for an object that no optimum is written for
-std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene, RunContext& context);
+std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene);
 
 }  // namespace geoprior::grammar

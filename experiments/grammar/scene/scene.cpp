@@ -121,8 +121,8 @@ void load_gesture(const GrammarSceneOptions& options, const fs::path& folder, Gr
   }
 }
 
-}  // namespace
-
+/// The object that the options describe, without edits.
+/// @param stretch  factors of its sizes along x, y, z
 Hierarchy make_object(const GrammarSceneOptions& options, const Eigen::Vector3d& stretch,
                       std::uint64_t seed) {
   switch (options.object) {
@@ -144,6 +144,8 @@ Hierarchy make_object(const GrammarSceneOptions& options, const Eigen::Vector3d&
   }
   return make_arm(options.arm);
 }
+
+}  // namespace
 
 std::shared_ptr<const SpatialMap> GrammarScene::asked_map(std::size_t step) const {
   const Step& s = steps.at(step);

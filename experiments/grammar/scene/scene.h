@@ -70,9 +70,4 @@ std::shared_ptr<GrammarScene> load_grammar_scene(const GrammarSceneOptions& opti
                                                  const std::filesystem::path& folder,
                                                  std::uint64_t seed);
 
-/// The object that the options describe, without edits.
-/// @param stretch  factors of its sizes along x, y, z
-Hierarchy make_object(const GrammarSceneOptions& options, const Eigen::Vector3d& stretch,
-                      std::uint64_t seed);
-
 }  // namespace geoprior::grammar

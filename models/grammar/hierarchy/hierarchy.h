@@ -99,7 +99,6 @@ class Hierarchy {
   [[nodiscard]] int find(const std::string& label, const std::string& where) const;
 
   void set_tag(int element, const Tag& tag) { tags_[element] = tag; }
-  void remove_tag(int element) { tags_.erase(element); }
   /// Null for most.
   [[nodiscard]] const Tag* tag(int element) const {
     if (tags_.empty()) return nullptr;

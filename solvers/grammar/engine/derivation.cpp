@@ -24,6 +24,9 @@ struct AskedBatch {
 
 constexpr std::size_t kParallelBlock = 2048;
 
+/// Name of what is done where no rule applies.
+const std::string kDefaultRule = "default";
+
 }  // namespace
 
 bool matches(const std::string& pattern, const std::string& text) {
@@ -144,8 +147,7 @@ std::string Derivation::place(const RuleCall& call, int element) const {
 }
 
 void Derivation::begin(const AskedBatch& batch, const Rule* rule, Phase phase) {
-  static const std::string kDefault = "default";
-  const std::string& name = rule != nullptr ? rule->name : kDefault;
+  const std::string& name = rule != nullptr ? rule->name : kDefaultRule;
   batch_ = undo_.next_batch();
   undo_.touch(batch.elements);
   for (const int element : batch.elements) {
@@ -180,7 +182,6 @@ void Derivation::call(const Rule* rule, RuleCall& call) {
 }
 
 void Derivation::apply(const Rule* rule, AskedBatch& batch, Phase phase) {
-  static const std::string kDefault = "default";
   begin(batch, rule, phase);
   const auto make = [&](std::size_t first, std::size_t last, bool parallel) {
     RuleCall c(*this, std::span<const int>(batch.elements).subspan(first, last - first));
@@ -192,7 +193,7 @@ void Derivation::apply(const Rule* rule, AskedBatch& batch, Phase phase) {
     c.phase_ = phase;
     c.sender_ = batch.sender;
     c.follows_ = batch.follows;
-    c.rule_ = rule != nullptr ? &rule->name : &kDefault;
+    c.rule_ = rule != nullptr ? &rule->name : &kDefaultRule;
     c.parallel_ = parallel;
     return c;
   };
@@ -221,8 +222,7 @@ Derivation::Turn Derivation::ascend() {
       begin(batch, nullptr, Phase::up);
     if (!asked_.empty())
       throw Error("asks children in the phase up",
-                  "rule '" + (rule ? rule->name : std::string("default")) + "'",
-                  "terminals, up, absorb");
+                  "rule '" + (rule ? rule->name : kDefaultRule) + "'", "terminals, up, absorb");
     const int parent = hierarchy_.parent(element);
     const bool bounds = parent < 0 || rules_.bounds_locality(hierarchy_.type(element).name);
     if (absorbed_) return {element, batch.sender, std::move(*absorbed_)};
