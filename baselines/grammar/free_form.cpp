@@ -1,6 +1,5 @@
 #include "baselines/grammar/free_form.h"
 
-#include <algorithm>
 #include <string>
 
 #include "core/error.h"
@@ -13,16 +12,9 @@ constexpr std::size_t kFreeFormBlock = 512;
 
 void map_rows(const SpatialMap& map, std::span<const char> moved, const std::vector<int>& element,
               Eigen::MatrixX3d& rows) {
-  if (!moved.empty() && !element.empty()) {
-    const int last = *std::max_element(element.begin(), element.end());
-    if (last >= std::ssize(moved))
-      throw Error("has " + std::to_string(moved.size()) + " numbers, one an element",
-                  "elements that free-form deformation moves", std::to_string(last + 1));
-  }
   parallel_blocks(rows.rows(), kFreeFormBlock, [&](std::size_t begin, std::size_t end) {
     for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
-      if (!moved.empty() && moved[element[i]] == 0) continue;
-      rows.row(i) = map.at(rows.row(i).transpose()).transpose();
+      if (moves(moved, element[i])) rows.row(i) = map.at(rows.row(i).transpose()).transpose();
     }
   });
 }
@@ -34,6 +26,14 @@ std::vector<char> elements_below(const Hierarchy& hierarchy, int element) {
   below[element] = 1;
   for (int e = element + 1; e < hierarchy.size(); ++e) below[e] = below[hierarchy.parent(e)];
   return below;
+}
+
+bool moves(std::span<const char> moved, int element) {
+  if (moved.empty()) return true;
+  if (element >= std::ssize(moved))
+    throw Error("has " + std::to_string(moved.size()) + " numbers, one an element",
+                "elements that a baseline moves", std::to_string(element + 1) + " or more");
+  return moved[element] != 0;
 }
 
 Geometry free_form(const Geometry& before, const SpatialMap& map, std::span<const char> moved) {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "baselines/grammar/free_form.h"
 #include "core/disjoint_sets.h"
 #include "core/geometry/topology.h"
 #include "core/parallel.h"
@@ -42,10 +43,11 @@ struct SurfacePiece {
   std::vector<int> welded;
 };
 
-std::vector<ElementBody> bodies_of(const Geometry& geometry) {
+std::vector<ElementBody> bodies_of(const Geometry& geometry, std::span<const char> moved) {
   std::vector<ElementBody> bodies;
   const auto collect = [&](const std::vector<int>& element, std::vector<int> ElementBody::*rows) {
     for (int i = 0; i < std::ssize(element); ++i) {
+      if (!moves(moved, element[i])) continue;
       if (element[i] >= std::ssize(bodies)) bodies.resize(element[i] + 1);
       (bodies[element[i]].*rows).push_back(i);
     }
@@ -275,9 +277,9 @@ void describe(OptionVisitor& v, RigidAsPossibleOptions& options) {
 }
 
 Geometry rigid_as_possible(const Geometry& before, const SpatialMap& map,
-                           const RigidAsPossibleOptions& options) {
+                           const RigidAsPossibleOptions& options, std::span<const char> moved) {
   Geometry after = before;
-  const std::vector<ElementBody> bodies = bodies_of(before);
+  const std::vector<ElementBody> bodies = bodies_of(before, moved);
   parallel_blocks(bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) move_body(before, bodies[b], map, options, after);
   });

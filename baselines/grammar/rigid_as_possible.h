@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/options.h"
 #include "models/grammar/maps/spatial_map.h"
 #include "models/grammar/record.h"
@@ -24,8 +26,11 @@ void describe(OptionVisitor& v, RigidAsPossibleOptions& options);
 ///
 /// It keeps the shape of the pieces, roughly, and nothing between them. Pieces none of whose held
 /// vertices is moved by the map stay, bit for bit.
+/// @param moved  one number an element: those with 0 stay, bit for bit; empty: all move
+/// @throws Error  `moved` that is too short
 /// Source: Sorkine and Alexa 2007; CGAL 5.5, Triangulated Surface Mesh Deformation.
 Geometry rigid_as_possible(const Geometry& before, const SpatialMap& map,
-                           const RigidAsPossibleOptions& options = {});
+                           const RigidAsPossibleOptions& options = {},
+                           std::span<const char> moved = {});
 
 }  // namespace geoprior::grammar

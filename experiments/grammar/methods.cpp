@@ -57,6 +57,11 @@ std::vector<MethodEntry> methods() {
           "non-linear least squares (Ceres)",
           [](const S& scene, const None&, RunContext&) { return optimum_deformer(scene); }),
       deformer_entry<None>(
+          "direct", true,
+          "older deformers by the code of other topics: what rules are held against",
+          "Magnenat-Thalmann et al. 1988; Sederberg and Parry 1986; thesis 2.2.2",
+          [](const S& scene, const None&, RunContext&) { return direct_deformer(scene); }),
+      deformer_entry<None>(
           "regeneration", true, "the procedure again, with the sizes that fit the map best",
           "procedural modelling",
           [](const S& scene, const None&, RunContext&) { return regenerating_deformer(scene); }),

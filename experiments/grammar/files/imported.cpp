@@ -13,11 +13,9 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "models/grammar/record.h"
 #include "testbed/formats/gltf/container.h"
 #include "testbed/formats/gltf/model.h"
 #include "testbed/formats/gltf/skin.h"
-#include "testbed/formats/gltf/writer.h"
 
 namespace geoprior::grammar {
 namespace {
@@ -385,10 +383,6 @@ ImportedScene import_gltf(const std::filesystem::path& file, double unit_m) {
 ImportedScene import_gltf_bytes(const std::vector<std::byte>& bytes,
                                 const std::filesystem::path& name, double unit_m) {
   return GltfImport(gltf::parse_gltf(bytes, name, false), unit_m).run();
-}
-
-std::string hierarchy_glb(const Hierarchy& state, const std::string& name) {
-  return surface_glb(geometry_of(state, true).surface, name);
 }
 
 }  // namespace geoprior::grammar

@@ -44,8 +44,4 @@ ImportedScene import_gltf(const std::filesystem::path& file, double unit_m);
 ImportedScene import_gltf_bytes(const std::vector<std::byte>& bytes,
                                 const std::filesystem::path& name, double unit_m);
 
-/// The bytes of a .glb of all that a state shows, as one surface (m, z up as in the world).
-/// @throws Error  naming `name`, when it shows nothing
-std::string hierarchy_glb(const Hierarchy& state, const std::string& name);
-
 }  // namespace geoprior::grammar

@@ -1,5 +1,8 @@
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "baselines/grammar/direct.h"
 #include "baselines/grammar/free_form.h"
 #include "baselines/grammar/instance_frames.h"
 #include "baselines/grammar/nothing.h"
@@ -19,15 +22,13 @@ class PlainDeformer : public Deformer {
       : scene_(scene), base_(scene.rest), undo_(base_) {
     no_rules_.bound_locality("*");
   }
-  void edit(const SceneEdit& edit, RunContext&) override {
+  void edit(const SceneEdit& edit) override {
     derive(base_, undo_, no_rules_, edit.wish);
     if (edit.tag) base_.set_tag(edit.wish.element, *edit.tag);
     deformed_ = false;
   }
-  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map,
-              RunContext& context) override {
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map) override {
     deformed_ = true;
-    const geoprior::Phase phase(context, "deform");
     make(*map);
   }
   [[nodiscard]] const Hierarchy& shown() const override { return base_; }
@@ -49,8 +50,8 @@ class PlainDeformer : public Deformer {
 class NothingDeformer final : public Deformer {
  public:
   explicit NothingDeformer(const GrammarScene& scene) : scene_(scene) {}
-  void edit(const SceneEdit&, RunContext&) override {}
-  void deform(std::size_t, const std::shared_ptr<const SpatialMap>&, RunContext&) override {}
+  void edit(const SceneEdit&) override {}
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>&) override {}
   [[nodiscard]] const Hierarchy& shown() const override { return nothing(scene_.rest); }
 
  private:
@@ -60,7 +61,8 @@ class NothingDeformer final : public Deformer {
 /// Moves key points and vertices, and knows no elements.
 class GeometryDeformer : public PlainDeformer {
  public:
-  using PlainDeformer::PlainDeformer;
+  explicit GeometryDeformer(const GrammarScene& scene)
+      : PlainDeformer(scene), moved_elements_(elements_below(scene.rest, scene.gesture_element)) {}
   [[nodiscard]] Geometry geometry(bool with_surface) const override {
     return shows_base() ? geometry_of(base_, with_surface) : moved_;
   }
@@ -69,6 +71,7 @@ class GeometryDeformer : public PlainDeformer {
   [[nodiscard]] Geometry before(bool vertices) const {
     return geometry_of(base_, vertices || scene_.record == GrammarSceneOptions::Record::surface);
   }
+  std::vector<char> moved_elements_;
   Geometry moved_;
 };
 
@@ -77,7 +80,9 @@ class FreeFormDeformer final : public GeometryDeformer {
   using GeometryDeformer::GeometryDeformer;
 
  private:
-  void make(const SpatialMap& map) override { moved_ = free_form(before(false), map); }
+  void make(const SpatialMap& map) override {
+    moved_ = free_form(before(false), map, moved_elements_);
+  }
 };
 
 class RigidDeformer final : public GeometryDeformer {
@@ -87,7 +92,7 @@ class RigidDeformer final : public GeometryDeformer {
 
  private:
   void make(const SpatialMap& map) override {
-    moved_ = rigid_as_possible(before(true), map, options_);
+    moved_ = rigid_as_possible(before(true), map, options_, moved_elements_);
     if (scene_.record == GrammarSceneOptions::Record::surface) return;
     moved_.surface = {};
   }
@@ -124,23 +129,51 @@ class RegeneratingDeformer final : public HierarchyDeformer {
   }
 };
 
+class CarriedDetailsDeformer final : public HierarchyDeformer {
+ public:
+  using HierarchyDeformer::HierarchyDeformer;
+
+ private:
+  void make(const SpatialMap& map) override { made_ = carried_details(base_, map); }
+};
+
+/// Edits are turns of joints; there is no gesture.
+class RigidPartsDeformer final : public Deformer {
+ public:
+  explicit RigidPartsDeformer(const GrammarScene& scene) : parts_(scene.rest), shown_(scene.rest) {}
+
+  void edit(const SceneEdit& edit) override {
+    const int element = edit.wish.element;
+    if (edit.wish.delta.kind != DeltaKind::rigid)
+      throw Error("is asked for something else",
+                  "edit of '" + shown_.label(element) + "' by direct code", "a turn");
+    parts_.turn(element, Eigen::Quaterniond(edit.wish.delta.transform.linear()));
+    parts_.place(shown_);
+    if (edit.tag) shown_.set_tag(element, *edit.tag);
+  }
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>&) override {}
+  [[nodiscard]] const Hierarchy& shown() const override { return shown_; }
+  [[nodiscard]] Geometry geometry(bool with_surface) const override {
+    return parts_.geometry(with_surface);
+  }
+
+ private:
+  RigidParts parts_;
+  Hierarchy shown_;
+};
+
 class OptimumDeformer final : public Deformer {
  public:
   explicit OptimumDeformer(const GrammarScene& scene)
       : scene_(scene), grammar_(scene.rest, object_rules(), {}) {}
 
-  void edit(const SceneEdit& edit, RunContext&) override {
+  void edit(const SceneEdit& edit) override {
     grammar_.edit(edit.wish, edit.tag);
     base_ = grammar_.state();
     result_.reset();
   }
-  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map,
-              RunContext& context) override {
-    {
-      const geoprior::Phase phase(context, "derive");
-      grammar_.gesture(scene_.gesture_element, map, map);
-    }
-    const geoprior::Phase phase(context, "optimise");
+  void deform(std::size_t, const std::shared_ptr<const SpatialMap>& map) override {
+    grammar_.gesture(scene_.gesture_element, map, map);
     const Hierarchy& rest = base_ ? *base_ : scene_.rest;
     result_ = optimise_object(rest, grammar_.state(), *map);
   }
@@ -184,6 +217,23 @@ std::unique_ptr<Deformer> regenerating_deformer(const GrammarScene& scene) {
   if (!scene.generate)
     throw Error("has no procedure", "object '" + scene.object + "'", "a procedural object");
   return std::make_unique<RegeneratingDeformer>(scene);
+}
+
+std::unique_ptr<Deformer> direct_deformer(const GrammarScene& scene) {
+  const std::string where = "direct code for object '" + scene.object + "'";
+  if (scene.kind == Object::arm) {
+    if (scene.steps.size() > scene.edits.size() + 1)
+      throw Error("has a gesture", where, "turns of joints alone (scene.edits)");
+    return std::make_unique<RigidPartsDeformer>(scene);
+  }
+  if (scene.kind == Object::surface_set) {
+    if (scene.gesture_element != 0)
+      throw Error("has a gesture of one item", where, "a gesture of the whole surface");
+    return std::make_unique<CarriedDetailsDeformer>(scene);
+  }
+  if (!scene.gesture.lattice)
+    throw Error("is not there", where, "an arm, a surface-set, or a gesture with a lattice");
+  return std::make_unique<FreeFormDeformer>(scene);
 }
 
 std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene) {

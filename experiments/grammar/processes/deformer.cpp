@@ -42,9 +42,8 @@ class DeformingModel final : public FrameModel {
   [[nodiscard]] int frame_count() const override { return static_cast<int>(scene_.steps.size()); }
 
   void load(StateReader& in, int next_frame) override {
-    RunContext context;
     for (int i = 1; i < next_frame; ++i)
-      if (scene_.steps[i].kind == Step::Kind::edit) method_->edit(edit_of(i), context);
+      if (scene_.steps[i].kind == Step::Kind::edit) method_->edit(edit_of(i));
     method_->load(in);
   }
   void save(StateWriter& out) const override { method_->save(out); }
@@ -52,12 +51,13 @@ class DeformingModel final : public FrameModel {
   void advance(int frame, FrameSink&, RunContext& context) override {
     if (scene_.steps[frame].kind == Step::Kind::edit) {
       const geoprior::Phase phase(context, "edit");
-      method_->edit(edit_of(frame), context);
+      method_->edit(edit_of(frame));
       return;
     }
     const auto map = scene_.asked_map(frame);
     require_invertible(*map, scene_.rest, frame);
-    method_->deform(frame, map, context);
+    const geoprior::Phase phase(context, "deform");
+    method_->deform(frame, map);
   }
 
   void record(int frame, FrameSink& sink, RunContext&) override {

@@ -13,14 +13,14 @@
 namespace geoprior::grammar {
 
 /// A method as the process of a scene drives it: first the edits, which stay, then the steps of a
-/// gesture or random gestures.
+/// gesture or random gestures. The process marks them as the phases "edit" and "deform", for all
+/// methods alike; how a gesture becomes a map is in neither.
 class Deformer {
  public:
   virtual ~Deformer() = default;
-  virtual void edit(const SceneEdit& edit, RunContext& context) = 0;
+  virtual void edit(const SceneEdit& edit) = 0;
   /// A step of the scene that has a map: `map`, from the state after the edits.
-  virtual void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& map,
-                      RunContext& context) = 0;
+  virtual void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& map) = 0;
 
   /// What is shown, and what is known of it.
   [[nodiscard]] virtual const Hierarchy& shown() const = 0;

@@ -8,8 +8,8 @@
 namespace geoprior::grammar {
 namespace {
 
-constexpr double kBoxWidth = 190, kBoxHeight = 46, kBoxGapX = 14, kBoxGapY = 34, kMargin = 20;
-constexpr std::size_t kMostLetters = 30;
+constexpr double kBoxWidth = 236, kBoxHeight = 62, kBoxGapX = 14, kBoxGapY = 34, kMargin = 20;
+constexpr std::size_t kMostLetters = 36;
 
 /// Where the boxes of a derivation are drawn: columns and rows.
 struct TraceLayout {
@@ -65,14 +65,15 @@ std::string trace_box(const Hierarchy& h, const TraceNode& node, double x, doubl
   std::string title = h.label(node.first);
   if (node.count > 1) title += " +" + std::to_string(node.count - 1);
   const std::string what =
-      std::string(name_of(node.kind)) + (node.phase == Phase::up ? " ↑ " : " ↓ ") + node.rule;
+      std::string(node.phase == Phase::up ? "↑ " : "↓ ") + std::string(name_of(node.kind));
   std::string out = number_pair("<rect x=\"%.1f\" y=\"%.1f\" ", x, y);
   out += number_pair("width=\"%.0f\" height=\"%.0f\" rx=\"5\" ", kBoxWidth, kBoxHeight);
   out += node.phase == Phase::up ? "fill=\"#fbe3c0\" stroke=\"#b06a00\"/>\n"
                                  : "fill=\"#dce9f7\" stroke=\"#2b5f9e\"/>\n";
   out += number_pair("<text x=\"%.1f\" y=\"%.1f\" font-weight=\"bold\">", x + 8, y + 18) +
          escaped(title) + "</text>\n";
-  return out + number_pair("<text x=\"%.1f\" y=\"%.1f\">", x + 8, y + 36) + escaped(what) +
+  out += number_pair("<text x=\"%.1f\" y=\"%.1f\">", x + 8, y + 35) + escaped(what) + "</text>\n";
+  return out + number_pair("<text x=\"%.1f\" y=\"%.1f\">", x + 8, y + 52) + escaped(node.rule) +
          "</text>\n";
 }
 

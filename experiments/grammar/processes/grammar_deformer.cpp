@@ -31,15 +31,12 @@ class RuleDeformer final : public Deformer {
         grammar_(scene.rest, scene_rules(scene, options.rules, options.limits, context.seed()),
                  options.grammar) {}
 
-  void edit(const SceneEdit& edit, RunContext& context) override {
-    const geoprior::Phase phase(context, "derive");
+  void edit(const SceneEdit& edit) override {
     report_ = grammar_.edit(edit.wish, edit.tag, options_.trace);
   }
-  void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& from_start,
-              RunContext& context) override {
+  void deform(std::size_t step, const std::shared_ptr<const SpatialMap>& from_start) override {
     const bool anew = options_.grammar.mode == GrammarOptions::Mode::from_start;
     const auto from_last = anew ? from_start : scene_.asked_since(step);
-    const geoprior::Phase phase(context, "derive");
     report_ = grammar_.gesture(scene_.gesture_element, from_start, from_last, options_.trace);
   }
   [[nodiscard]] const Hierarchy& shown() const override { return grammar_.state(); }

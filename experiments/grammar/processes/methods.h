@@ -38,6 +38,10 @@ std::unique_ptr<Deformer> rigid_deformer(const GrammarScene& scene,
                                          const RigidAsPossibleOptions& options);
 /// @throws Error  for an object without a procedure
 std::unique_ptr<Deformer> regenerating_deformer(const GrammarScene& scene);
+/// The code of other topics for what the rules in Lua of reformulated.toml do: an arm's joints by
+/// skinning, items on a surface as details, anything else free-form by a lattice.
+/// @throws Error  for an object and a gesture that there is no such code for
+std::unique_ptr<Deformer> direct_deformer(const GrammarScene& scene);
 /// Begins with what the grammar makes, whose children it keeps.
 /// @throws Error  for an object that no optimum is written for
 std::unique_ptr<Deformer> optimum_deformer(const GrammarScene& scene);

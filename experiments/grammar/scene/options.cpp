@@ -43,19 +43,24 @@ void describe(OptionVisitor& v, ImportedOptions& options) {
 }
 
 void describe(OptionVisitor& v, EditOptions& options) {
-  constexpr std::array<std::string_view, 4> kKinds{"translate", "turn", "set", "extrude"};
+  constexpr std::array<std::string_view, 5> kKinds{"translate", "turn", "set", "extrude",
+                                                   "children"};
   constexpr std::array<std::string_view, 3> kKeeps{"rigid", "stop", "no"};
   v.value("element", options.element,
           {.doc = "element that is edited: type and number, or its name", .required = true});
   describe_choice(v, "kind", options.kind, kKinds,
                   {.doc = "what is done to the element: moved, turned about where it is at rest, a "
-                          "parameter set or made larger"});
+                          "parameter set or made larger, given more children or fewer"});
   v.value("by", options.by, {.doc = "shift of an element that is moved", .unit = "m"});
   v.value("axis", options.axis, {.doc = "axis that an element is turned about"});
   v.value("angle_deg", options.angle_deg,
           {.doc = "angle that an element is turned by", .unit = "deg", .min = -360, .max = 360});
   v.value("parameter", options.parameter, {.doc = "name of the parameter that is edited"});
-  v.value("value", options.value, {.doc = "value that a parameter is set to or grows by"});
+  v.value(
+      "value", options.value,
+      {.doc =
+           "value that a parameter is set to or grows by; how many children come (a whole number; "
+           "negative: go)"});
   describe_choice(
       v, "keep", options.keep, kKeeps,
       {.doc = "what a later deformation from above does to the edited element: moves it "

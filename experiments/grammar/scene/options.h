@@ -26,7 +26,7 @@ struct ImportedOptions {
 
 /// One edit of one element, before the gesture.
 struct EditOptions {
-  enum class Kind { translate, turn, set, extrude };
+  enum class Kind { translate, turn, set, extrude, children };
   enum class Keep { rigid, stop, no };
   std::string element = {};
   Kind kind = Kind::translate;
@@ -34,7 +34,7 @@ struct EditOptions {
   std::array<double, 3> axis{0, 0, 1};  ///< turn, about the element's position
   double angle_deg = 0;                 ///< turn
   std::string parameter = {};           ///< set, extrude
-  double value = 0;                     ///< set: the value; extrude: by how much
+  double value = 0;  ///< set: the value; extrude: by how much; children: how many
   Keep keep = Keep::rigid;
 };
 

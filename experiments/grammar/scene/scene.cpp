@@ -20,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// That one edit may ask for.
+constexpr double kMostNewChildren = 1000;
+
 std::string object_name(Object object) {
   constexpr std::array<const char*, 8> kNames{"tree",      "building", "surface-set", "volume-set",
                                               "landscape", "forest",   "arm",         "imported"};
@@ -43,6 +46,10 @@ Delta asked_delta(const Hierarchy& h, int element, const EditOptions& e, const s
       return Delta::set(h.type(element).parameter(e.parameter), e.value);
     case EditOptions::Kind::extrude:
       return Delta::extrude(h.type(element).parameter(e.parameter), e.value);
+    case EditOptions::Kind::children:
+      if (e.value == 0 || e.value != std::round(e.value) || std::abs(e.value) > kMostNewChildren)
+        throw Error("is no number of children", where + ".value", "-1000 … -1, 1 … 1000");
+      return Delta::children(static_cast<int>(e.value));
   }
   return {};
 }

@@ -92,8 +92,11 @@ Eigen::Quaterniond rotation_of(const Matrix3d& m) {
       throw Error("has the determinant " + std::to_string(determinant), "Jacobian of a map",
                   "a positive one, of a map that turns nothing inside out");
     const Matrix3d inverse = cofactor / determinant;
-    const double scale = std::sqrt(inverse.norm() / Q.norm());
-    const Matrix3d next = 0.5 * (scale * Q + inverse / scale);
+    // Far from a rotation the scaled step is shorter, near one the plain step is cheaper.
+    const double size = Q.squaredNorm();
+    const double scale =
+        std::abs(size - 3) > 0.5 ? std::sqrt(std::sqrt(inverse.squaredNorm() / size)) : 1;
+    const Matrix3d next = (0.5 * scale) * Q + (0.5 / scale) * inverse;
     const double change = (next - Q).cwiseAbs().maxCoeff();
     Q = next;
     if (change < 1e-8) break;

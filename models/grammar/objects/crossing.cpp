@@ -34,12 +34,17 @@ double gap(const Capsule& first, const Capsule& second) {
   return (p.first - p.second).norm() - first.radius - second.radius;
 }
 
-CapsuleGrid::CapsuleGrid(double cell, int expected)
-    : cell_(cell), heads_(std::bit_ceil(static_cast<std::size_t>(std::max(64, 4 * expected))), -1) {
+void CapsuleGrid::restart(double cell, int expected) {
   if (!(cell > 0)) throw Error("the edge of a cube is not positive", "grid of capsules", "> 0 m");
-  entries_.reserve(8 * static_cast<std::size_t>(std::max(expected, 0)));
-  capsules_.reserve(2 * static_cast<std::size_t>(std::max(expected, 0)));
-  current_.reserve(static_cast<std::size_t>(std::max(expected, 0)));
+  const auto count = static_cast<std::size_t>(std::max(expected, 0));
+  cell_ = cell;
+  heads_.assign(std::bit_ceil(std::max<std::size_t>(64, 4 * count)), -1);
+  entries_.clear();
+  capsules_.clear();
+  current_.clear();
+  entries_.reserve(8 * count);
+  capsules_.reserve(2 * count);
+  current_.reserve(count);
 }
 
 void CapsuleGrid::place(int owner, const Capsule& capsule) {
@@ -69,13 +74,6 @@ void CapsuleGrid::take_deeper(const Capsule& capsule, const Capsule& other, int 
   const Eigen::Vector3d unit =
       distance > 1e-12 ? Eigen::Vector3d(away / distance) : (other.b - other.a).unitOrthogonal();
   out = Crossing{owner, depth, p.first, unit};
-}
-
-double CapsuleGrid::distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& x) const {
-  const Eigen::Vector3d u = capsule.b - capsule.a;
-  const double uu = u.squaredNorm();
-  const double t = uu > 0 ? std::clamp((x - capsule.a).dot(u) / uu, 0.0, 1.0) : 0;
-  return (x - capsule.a - t * u).norm();
 }
 
 }  // namespace geoprior::grammar

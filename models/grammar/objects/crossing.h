@@ -43,7 +43,9 @@ class CapsuleGrid {
  public:
   /// @param cell      edge of a cube (m), about the length of a capsule
   /// @param expected  number of capsules
-  CapsuleGrid(double cell, int expected);
+  CapsuleGrid(double cell, int expected) { restart(cell, expected); }
+  /// Begins anew, without any capsule, and keeps the memory.
+  void restart(double cell, int expected);
 
   /// Places the capsule of an owner (a number from 0 on), instead of the one it had.
   void place(int owner, const Capsule& capsule);
@@ -96,7 +98,6 @@ class CapsuleGrid {
                      static_cast<std::uint32_t>(cell[2]) * 83492791u;
     return mix & (heads_.size() - 1);
   }
-  [[nodiscard]] double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& x) const;
 
   /// The cubes of the capsule's box that the capsule may reach.
   template <class Visit>
@@ -107,18 +108,22 @@ class CapsuleGrid {
       low[k] = number(std::min(capsule.a[k], capsule.b[k]) - capsule.radius);
       high[k] = number(std::max(capsule.a[k], capsule.b[k]) + capsule.radius);
     }
-    const double reach = capsule.radius + 0.5 * std::sqrt(3.0) * cell_;
+    const double reach = capsule.radius + 0.5 * std::sqrt(3.0) * cell_, near = reach * reach;
+    const Eigen::Vector3d axis = capsule.b - capsule.a;
+    const double squared = axis.squaredNorm();
+    const Eigen::Vector3d per_length = squared > 0 ? Eigen::Vector3d(axis / squared) : axis;
     Cell c;
     for (c[0] = low[0]; c[0] <= high[0]; ++c[0])
       for (c[1] = low[1]; c[1] <= high[1]; ++c[1])
         for (c[2] = low[2]; c[2] <= high[2]; ++c[2]) {
-          const Eigen::Vector3d centre =
-              cell_ * Eigen::Vector3d(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5);
-          if (distance_to_axis(capsule, centre) <= reach) visit(c);
+          const Eigen::Vector3d from_start =
+              cell_ * Eigen::Vector3d(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5) - capsule.a;
+          const double t = std::clamp(from_start.dot(per_length), 0.0, 1.0);
+          if ((from_start - t * axis).squaredNorm() <= near) visit(c);
         }
   }
 
-  double cell_;
+  double cell_ = 1;
   std::vector<int> heads_;  ///< first entry of a bucket; their number is a power of two
   std::vector<Entry> entries_;
   std::vector<Placed> capsules_;

@@ -65,16 +65,22 @@ DiskSampling spaced_ground(const ForestOptions& o, RandomStream& random) {
   return sample_disks(columns * rows * trials, point, {-half, half}, o.distance);
 }
 
-/// Cells row by row; the last row is filled as far as elements go.
+/// Cells row by row; the last row is filled as far as elements go. A cell's place depends on where
+/// it is about the middle alone: forests of any size are alike there.
 DiskSampling loose_ground(const ForestOptions& o, RandomStream& random) {
   const auto [width, depth] = ground_sides(o.elements, o.distance, o.aspect);
   const int columns = std::max(1, static_cast<int>(std::lround(width / o.distance)));
+  const int rows = std::max(1, static_cast<int>(std::lround(depth / o.distance)));
+  const std::uint64_t seed = random.next();
   DiskSampling out;
   out.elements.reserve(o.elements);
   for (int i = 0; i < o.elements; ++i) {
-    const double x = i % columns + 0.5 + kForestJitter * (random.uniform() - 0.5);
-    const double y = i / columns + 0.5 + kForestJitter * (random.uniform() - 0.5);
-    out.elements.emplace_back(o.distance * x - width / 2, o.distance * y - depth / 2, 0);
+    const int column = i % columns - columns / 2, row = i / columns - rows / 2;
+    RandomStream cell(seed, static_cast<std::uint64_t>(static_cast<std::uint32_t>(column)) << 32 |
+                                static_cast<std::uint32_t>(row));
+    const double x = column + 0.5 + kForestJitter * (cell.uniform() - 0.5);
+    const double y = row + 0.5 + kForestJitter * (cell.uniform() - 0.5);
+    out.elements.emplace_back(o.distance * x, o.distance * y, 0);
   }
   return out;
 }

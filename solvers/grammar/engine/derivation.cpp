@@ -87,6 +87,9 @@ class Derivation {
         pending_.pop_back();
         descend(batch);
       }
+      if (edit_.delta.kind == DeltaKind::children && report_.spawned + report_.removed == 0)
+        throw Error("no rule gives it children or takes them, or there is no room",
+                    "element '" + hierarchy_.label(edit_.element) + "'");
     } catch (...) {
       undo_.roll_back();
       throw;
@@ -159,7 +162,6 @@ void Derivation::begin(const AskedBatch& batch, const Rule* rule, Phase phase) {
   }
   const int count = static_cast<int>(batch.elements.size());
   report_.rewrites += count;
-  report_.by_rule[name] += count;
   if (!tracing_) return;
   report_.trace.push_back(
       {batch.trace, name, batch.elements.front(), count, batch.delta.kind, batch.origin, phase});

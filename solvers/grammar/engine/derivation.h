@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -28,14 +27,13 @@ struct TraceNode {
 
 /// What a derivation did.
 struct DerivationReport {
-  int rewrites = 0;                    ///< rules applied, one an element
-  int spawned = 0;                     ///< elements added, or present again
-  int removed = 0;                     ///< elements taken away
-  int stopped = 0;                     ///< elements that a tag kept from being asked
-  int followed = 0;                    ///< elements that a tag let only follow
-  int turned_at = 0;                   ///< the element that bounded the locality
-  std::map<std::string, int> by_rule;  ///< rewrites
-  std::vector<TraceNode> trace;        ///< empty unless asked for
+  int rewrites = 0;              ///< rules applied, one an element
+  int spawned = 0;               ///< elements added, or present again
+  int removed = 0;               ///< elements taken away
+  int stopped = 0;               ///< elements that a tag kept from being asked
+  int followed = 0;              ///< elements that a tag let only follow
+  int turned_at = 0;             ///< the element that bounded the locality
+  std::vector<TraceNode> trace;  ///< empty unless asked for
 };
 
 /// Interprets an edit by rules: up from the edited element to the one that bounds the locality,

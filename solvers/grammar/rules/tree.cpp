@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,14 @@ using Branch = BranchParameter;
 
 /// How far a branch follows a child that is pulled, over its length; the rest is its parent's.
 constexpr double kCarrierYield = 0.35;
+
+/// Whether a tag is on a branch or below it.
+bool keeps_edit(const Hierarchy& h, int e) {
+  const auto& children = h.children(e);
+  return h.tag(e) != nullptr || std::any_of(children.begin(), children.end(), [&](int child) {
+           return h.present(child) && keeps_edit(h, child);
+         });
+}
 
 /// What the rules of trees know of the derivation that is under way.
 class TreeGrammar {
@@ -47,6 +56,8 @@ class TreeGrammar {
   void subdivide(RuleCall& call, int e);
   void sprout(RuleCall& call, int parent, const BranchReach& s, int level, double mean,
               double radius);
+  void sprout_aside(RuleCall& call, int e, double around);
+  void change_children(RuleCall& call, int e);
 
   // Edits.
   void fix(const Hierarchy& h, int e, const Pose& pose, double length);
@@ -57,6 +68,7 @@ class TreeGrammar {
   TreePlan plan_;
   TreeRoom room_;
   Vector3d tree_shift_ = Vector3d::Zero();
+  int more_children_ = 0;  ///< of the edited branch
 };
 
 void TreeGrammar::require_plan(const RuleCall& call) const {
@@ -176,6 +188,7 @@ void TreeGrammar::place_fixed(RuleCall& call, int e) {
   call.set_parameter(e, Branch::kLength, wish.length);
   room_.place(e, branch_capsule(h, e), false);
   subdivide(call, e);
+  if (e == call.edited() && more_children_ != 0) change_children(call, e);
 }
 
 /// A branch that is asked to be longer than it may be goes on in a new one, beside which another
@@ -203,12 +216,35 @@ void TreeGrammar::subdivide(RuleCall& call, int e) {
             std::clamp(length, kShortestBranch * mean, kLongestBranch * mean)},
            level, mean, radius);
   }
-  if (at_tip <= 1) {
-    const double side_mean = plan_.level_mean(level + 1);
-    const Vector3d aside = h.turn(e) * Vector3d::UnitX();
-    sprout(call, e, {(axis + aside).normalized(), kShortestBranch * side_mean}, level + 1,
-           side_mean, 0.7 * radius);
-  }
+  if (at_tip <= 1) sprout_aside(call, e, 0);
+}
+
+/// A short branch of the next level at the tip, 45 degrees off the axis.
+/// @param around  angle about the axis (rad)
+void TreeGrammar::sprout_aside(RuleCall& call, int e, double around) {
+  const Hierarchy& h = call.now();
+  const int level = static_cast<int>(h.parameter(e, Branch::kLevel)) + 1;
+  const double mean = plan_.level_mean(level);
+  const double radius = h.parameter(e, Branch::kRadius) * h.parameter(e, Branch::kTaper);
+  const Vector3d aside = h.turn(e) * Vector3d(std::cos(around), std::sin(around), 0);
+  sprout(call, e, {(branch_axis(h, e) + aside).normalized(), kShortestBranch * mean}, level, mean,
+         0.7 * radius);
+}
+
+/// As many new branches at the tip as the edit asks for and as have room; or the thinnest ones go,
+/// but for those that carry a user's edit.
+void TreeGrammar::change_children(RuleCall& call, int e) {
+  const Hierarchy& h = call.now();
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (int k = 0; k < more_children_; ++k) sprout_aside(call, e, (k + 1) * golden);
+  std::vector<int> children;
+  for (const int child : h.children(e))
+    if (h.present(child) && !keeps_edit(h, child)) children.push_back(child);
+  std::stable_sort(children.begin(), children.end(), [&](int a, int b) {
+    return h.parameter(a, Branch::kRadius) < h.parameter(b, Branch::kRadius);
+  });
+  for (int k = 0; k < std::min(-more_children_, static_cast<int>(children.size())); ++k)
+    call.remove(children[k]);
 }
 
 void TreeGrammar::sprout(RuleCall& call, int parent, const BranchReach& s, int level, double mean,
@@ -310,6 +346,7 @@ void TreeGrammar::edited_up(RuleCall& call) {
   const int e = call.elements()[0];
   plan_.begin(h, e, e, call.derivation());
   tree_shift_.setZero();
+  more_children_ = 0;
   const Pose before = h.pose(e);
   const double length = h.parameter(e, Branch::kLength);
   Pose pose = before;
@@ -347,6 +384,11 @@ void TreeGrammar::edited_up(RuleCall& call) {
     case DeltaKind::extrude:
     case DeltaKind::set_parameter:
       edit_parameter(call, e);
+      break;
+    case DeltaKind::children:
+      more_children_ = static_cast<int>(call.delta().value);
+      fix(h, e, before, length);
+      wish.moved = false;  // nor does what hangs on it
       break;
     default:
       return;

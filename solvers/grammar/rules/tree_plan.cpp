@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "models/grammar/objects/tree.h"
@@ -13,24 +14,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPlanPasses = 12;
+constexpr double kSettled = 1e-9;        // m, between two passes
 constexpr double kFarthestBranch = 1e6;  // m
 
-/// Adds what below a branch depends on its base and tip, before the branch itself is looked at.
-struct BelowSums {
-  double w = 0, wa = 0, waa = 0;
-  Vector3d wx = Vector3d::Zero(), wax = Vector3d::Zero();
-
-  void add(double weight, double attach, const Vector3d& centre) {
-    w += weight;
-    wa += weight * attach;
-    waa += weight * attach * attach;
-    wx += weight * centre;
-    wax += (weight * attach) * centre;
-  }
-};
-
 /// Weight, centre and best tip of a branch, from the sums over its children.
-void weigh_branch(BranchWish& wish, const BelowSums& below) {
+void weigh_branch(BranchWish& wish, const BranchSums& below) {
   const double share = below.wa - below.waa;
   wish.tip_weight = 1 + below.waa;
   wish.tip_share = share;
@@ -173,7 +161,7 @@ void TreePlan::carry(const Hierarchy& hierarchy) {
 }
 
 void TreePlan::pass_up(const Hierarchy& hierarchy) {
-  std::vector<BelowSums> sums(wishes_.size());
+  sums_.assign(wishes_.size(), {});
   for (auto i = branches_.rbegin(); i != branches_.rend(); ++i) {
     const int e = *i, parent = hierarchy.parent(e);
     BranchWish& wish = wishes_[e];
@@ -182,14 +170,15 @@ void TreePlan::pass_up(const Hierarchy& hierarchy) {
       wish.weight = 1;
       wish.centre = wish.base;
     } else {
-      weigh_branch(wish, sums[e]);
+      weigh_branch(wish, sums_[e]);
     }
     if (parent != tree_ && !wish.fixed)
-      sums[parent].add(wish.weight, hierarchy.parameter(e, BranchParameter::kAttach), wish.centre);
+      sums_[parent].add(wish.weight, hierarchy.parameter(e, BranchParameter::kAttach), wish.centre);
   }
 }
 
-void TreePlan::pass_down(const Hierarchy& hierarchy, const Vector3d& root) {
+double TreePlan::pass_down(const Hierarchy& hierarchy, const Vector3d& root) {
+  double turned = 0;
   for (const int e : branches_) {
     BranchWish& wish = wishes_[e];
     if (!wish.moved) continue;
@@ -208,15 +197,20 @@ void TreePlan::pass_down(const Hierarchy& hierarchy, const Vector3d& root) {
     if (wish.follows) continue;
     const Vector3d along = best_along(e, wish.planned_base);
     const double length = along.norm(), allowed = std::clamp(length, wish.low, wish.high);
-    wish.clamped = length != allowed;
-    if (length > 0) wish.planned_along = (allowed / length) * along;
+    const bool clamped = std::exchange(wish.clamped, length != allowed);
+    if (!(length > 0)) continue;
+    const Vector3d before = std::exchange(wish.planned_along, (allowed / length) * along);
+    // What is not clamped has no say in the next pass.
+    if (clamped || wish.clamped)
+      turned = std::max(turned, (wish.planned_along - before).cwiseAbs().maxCoeff());
   }
+  return turned;
 }
 
 void TreePlan::solve(const Hierarchy& hierarchy, const Vector3d& root) {
   for (int pass = 0; pass < kPlanPasses; ++pass) {
     pass_up(hierarchy);
-    pass_down(hierarchy, root);
+    if (pass_down(hierarchy, root) <= kSettled) break;
   }
   for (const int e : branches_) wishes_[e].asked = wishes_[e].moved;
   for (auto e = branches_.rbegin(); e != branches_.rend(); ++e)

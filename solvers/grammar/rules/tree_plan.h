@@ -35,6 +35,20 @@ struct BranchWish {
   Eigen::Vector3d tip_pull;
 };
 
+/// What the squared deviation below a branch adds up to, before the branch itself is looked at.
+struct BranchSums {
+  double w = 0, wa = 0, waa = 0;
+  Eigen::Vector3d wx = Eigen::Vector3d::Zero(), wax = Eigen::Vector3d::Zero();
+
+  void add(double weight, double attach, const Eigen::Vector3d& centre) {
+    w += weight;
+    wa += weight * attach;
+    waa += weight * attach * attach;
+    wx += weight * centre;
+    wax += (weight * attach) * centre;
+  }
+};
+
 /// What a derivation asks of the branches of one tree, and the answer of least squared deviation,
 /// which heeds that branches hang together and the bounds of their lengths, but not what crosses.
 ///
@@ -78,12 +92,14 @@ class TreePlan {
  private:
   void limits(const Hierarchy& hierarchy, int branch);
   void pass_up(const Hierarchy& hierarchy);
-  void pass_down(const Hierarchy& hierarchy, const Eigen::Vector3d& root);
+  /// Returns by how much clamped branches moved since the pass before (m).
+  double pass_down(const Hierarchy& hierarchy, const Eigen::Vector3d& root);
 
   std::uint64_t derivation_ = 0;
   int tree_ = -1;
   std::vector<int> branches_;
   std::vector<BranchWish> wishes_;  ///< by element
+  std::vector<BranchSums> sums_;    ///< by element, of one pass
   std::vector<char> mapped_;        ///< by element: asked by a map
   std::vector<double> means_;       ///< by level; 0: none
   double mean_length_ = 0;

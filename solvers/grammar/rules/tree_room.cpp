@@ -17,13 +17,19 @@ using Branch = BranchParameter;
 
 void TreeRoom::begin(int tree, double mean_length, int branches, int elements) {
   tree_ = tree;
-  grid_ = CapsuleGrid(mean_length, branches);
+  grid_.restart(mean_length, branches);
   placed_.assign(elements, 0);
 }
 
 void TreeRoom::place(int branch, const Capsule& capsule, bool planned) {
   if (branch >= static_cast<int>(placed_.size())) placed_.resize(branch + 1, 0);
-  grid_.place(branch, capsule);
+  // Most take the place that was planned for them, but for rounding.
+  constexpr double kSame = 0.01 * kTreeClearance;
+  const Capsule* old = grid_.of(branch);
+  if (old == nullptr || old->radius != capsule.radius ||
+      (old->a - capsule.a).cwiseAbs().maxCoeff() > kSame ||
+      (old->b - capsule.b).cwiseAbs().maxCoeff() > kSame)
+    grid_.place(branch, capsule);
   placed_[branch] = !planned;
 }
 

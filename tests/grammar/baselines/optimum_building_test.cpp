@@ -8,6 +8,7 @@
 #include "experiments/grammar/scene/building.h"
 #include "models/grammar/objects/building_layout.h"
 #include "solvers/grammar/engine/derivation.h"
+#include "solvers/grammar/rules/building_stack.h"
 #include "solvers/grammar/rules/rules.h"
 
 namespace geoprior::grammar {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "baselines/grammar/free_form.h"
+#include "core/error.h"
 #include "core/geometry/procedural.h"
 #include "core/parallel.h"
 
@@ -124,6 +126,23 @@ TEST(GrammarRigidAsPossible, SameBytesWithOneThreadAndTwo) {
   with_threads(2, [&] { two = rigid_as_possible(before, GrowingShear()); });
   EXPECT_EQ(one.surface.V, two.surface.V);
   EXPECT_EQ(one.keys, two.keys);
+}
+
+TEST(GrammarRigidAsPossible, WhatIsNotToMoveStays) {
+  Hierarchy h;
+  const TriMesh mesh = tube().surface;
+  const int type =
+      h.add_type({.name = "piece", .mesh = [mesh](std::span<const double>) { return mesh; }});
+  h.add(type, -1, {});
+  h.add(type, 0, {});
+  const Geometry before = geometry_of(h, true);
+  Eigen::Affine3d shear = Eigen::Affine3d::Identity();
+  shear(1, 0) = 0.5;
+  const Geometry after = rigid_as_possible(before, AffineMap(shear), {}, elements_below(h, 1));
+  const int half = before.surface.vertex_count() / 2;
+  EXPECT_EQ(after.surface.V.topRows(half), before.surface.V.topRows(half));
+  EXPECT_GT((after.surface.V - before.surface.V).bottomRows(half).cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_THROW(rigid_as_possible(before, AffineMap(shear), {}, std::vector<char>{1}), Error);
 }
 
 }  // namespace

@@ -70,6 +70,14 @@ TEST(GrammarDerivation, AnEditClimbsToTheElementThatBoundsTheLocality) {
   for (int e = 5; e < 9; ++e) EXPECT_EQ(h.position(e), before[e]);
 }
 
+TEST(GrammarDerivation, ChildrenThatNoRuleMakesAreAnError) {
+  Hierarchy h = two_arms();
+  Transaction undo(h);
+  const auto message = message_of([&] { derive(h, undo, RuleSet{}, {1, Delta::children(2)}); });
+  EXPECT_THAT(message, HasSubstr("element 'arm-1'"));
+  EXPECT_THAT(message, HasSubstr("children"));
+}
+
 TEST(GrammarDerivation, RewritesAreAtMostTwoAnElement) {
   Hierarchy h = two_arms();
   Transaction undo(h);

@@ -170,16 +170,5 @@ TEST(GrammarImported, RefusesWhatIsNoScene) {
                      {"machine.glb", "cyclic"});
 }
 
-TEST(GrammarImported, AStateIsWrittenAsOneSurface) {
-  const Hierarchy h =
-      imported_of(R"([{"name": "a", "mesh": 0, "translation": [1, 2, 3]}])").hierarchy;
-  const std::string bytes = hierarchy_glb(h, "state");
-  const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
-  const Hierarchy back = import_gltf_bytes({data, data + bytes.size()}, "state.glb", 1).hierarchy;
-  EXPECT_EQ(geometry_of(back, true).surface.triangle_count(), 4);
-  test::expect_error([] { hierarchy_glb(imported_of(R"([{"name": "empty"}])").hierarchy, "none"); },
-                     {"none"});
-}
-
 }  // namespace
 }  // namespace geoprior::grammar

@@ -13,6 +13,7 @@
 #include "experiments/grammar/maps/gesture.h"
 #include "models/grammar/objects/building_layout.h"
 #include "solvers/grammar/engine/derivation.h"
+#include "solvers/grammar/rules/building_stack.h"
 #include "solvers/grammar/rules/rules.h"
 
 namespace geoprior::grammar {

@@ -12,41 +12,22 @@
 #include "models/grammar/objects/spacing.h"
 #include "solvers/grammar/grammar.h"
 #include "solvers/grammar/rules/rules.h"
+#include "tests/grammar/rules/deformed_objects.h"
 
 namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
+using samples::deformed;
+using samples::deviation;
+using samples::is_same;
+using samples::key_box;
 
 std::vector<int> standing_of_type(const Hierarchy& h, const std::string& type) {
   std::vector<int> out;
   for (int e = 0; e < h.size(); ++e)
     if (h.present(e) && h.type(e).name == type) out.push_back(e);
   return out;
-}
-
-Eigen::AlignedBox3d box_of(const Hierarchy& h) {
-  Eigen::AlignedBox3d box;
-  std::vector<Vector3d> keys;
-  for (int e = 0; e < h.size(); ++e)
-    if (h.present(e)) h.keys(e, keys);
-  for (const Vector3d& x : keys) box.extend(x);
-  return box;
-}
-
-Hierarchy deformed(const Hierarchy& rest, const std::shared_ptr<const SpatialMap>& map) {
-  Hierarchy h = rest;
-  Transaction undo(h);
-  derive(h, undo, landscape_rules(), {0, Delta::free(map)});
-  return h;
-}
-
-bool is_same(const Hierarchy& a, const Hierarchy& b, int e) {
-  const auto p = a.parameters(e), q = b.parameters(e);
-  const auto x = a.points(e), y = b.points(e);
-  return a.present(e) == b.present(e) && a.position(e) == b.position(e) &&
-         a.turn(e).coeffs() == b.turn(e).coeffs() && std::equal(p.begin(), p.end(), q.begin()) &&
-         std::equal(x.begin(), x.end(), y.begin());
 }
 
 /// Where two of those that keep apart are too near, one leans, or is not on the ground.
@@ -88,24 +69,6 @@ void expect_path_kept(const Hierarchy& h, const std::string& where) {
   }
 }
 
-double deviation(const Hierarchy& rest, const Hierarchy& h, const SpatialMap& map) {
-  double sum = 0;
-  int count = 0;
-  for (int e = 0; e < rest.size(); ++e) {
-    std::vector<Vector3d> before, after;
-    if (!rest.present(e) || !h.present(e)) continue;
-    rest.keys(e, before);
-    h.keys(e, after);
-    if (before.empty()) continue;
-    double squares = 0;
-    for (std::size_t k = 0; k < before.size(); ++k)
-      squares += (after[k] - map.at(before[k])).squaredNorm();
-    sum += squares / static_cast<double>(before.size());
-    ++count;
-  }
-  return std::sqrt(sum / count);
-}
-
 int nearest_pine_to(const Hierarchy& h, int pine) {
   const std::vector<int> pines = standing_of_type(h, "pine");
   const auto distance = [&](int e) {
@@ -117,12 +80,12 @@ int nearest_pine_to(const Hierarchy& h, int pine) {
 
 TEST(GrammarLandscapeRules, AllConstraintsHoldAndTheMapIsFollowed) {
   const Hierarchy rest = make_landscape({}, 1);
-  const auto box = box_of(rest);
+  const auto box = key_box(rest);
   double ratio = 0;
   constexpr int kLandGestures = 25;
   for (int g = 0; g < kLandGestures; ++g) {
     const auto map = map_of(random_gesture(7, g, box), 1);
-    const Hierarchy h = deformed(rest, map);
+    const Hierarchy h = deformed(rest, landscape_rules(), map);
     h.require_valid();
     expect_kept(h, "gesture " + std::to_string(g));
     expect_path_kept(h, "gesture " + std::to_string(g));
@@ -135,7 +98,7 @@ TEST(GrammarLandscapeRules, WhatAGestureDoesNotReachStays) {
   const Hierarchy rest = make_landscape({}, 1);
   Gesture gesture;
   gesture.strokes.push_back({Stroke::Kind::grab, {{-20, -20, 2}, {-18, -17, 5}}, 12});
-  const Hierarchy h = deformed(rest, map_of(gesture, 1));
+  const Hierarchy h = deformed(rest, landscape_rules(), map_of(gesture, 1));
   int changed = 0;
   for (int e = 2; e < rest.size(); ++e) {
     if ((rest.position(e) - Vector3d(-20, -20, 2)).norm() > 30) {
@@ -144,14 +107,14 @@ TEST(GrammarLandscapeRules, WhatAGestureDoesNotReachStays) {
     changed += is_same(rest, h, e) ? 0 : 1;
   }
   EXPECT_GT(changed, 3);
-  const Hierarchy same = deformed(rest, map_of(gesture, 0));
+  const Hierarchy same = deformed(rest, landscape_rules(), map_of(gesture, 0));
   for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(is_same(rest, same, e));
 }
 
 TEST(GrammarLandscapeRules, HousesThatAreBroughtTogetherAreMovedApart) {
   const Hierarchy rest = make_landscape({}, 1);
   const auto map = std::make_shared<AffineMap>(Eigen::Affine3d(Eigen::Scaling(0.6, 0.7, 1.0)));
-  const Hierarchy h = deformed(rest, map);
+  const Hierarchy h = deformed(rest, landscape_rules(), map);
   expect_kept(h, "squeezed");
   expect_path_kept(h, "squeezed");
   double moved = 0;
@@ -162,10 +125,10 @@ TEST(GrammarLandscapeRules, HousesThatAreBroughtTogetherAreMovedApart) {
 
 TEST(GrammarLandscapeRules, NothingPopsFromFrameToFrame) {
   const Hierarchy rest = make_landscape({}, 1);
-  const Gesture gesture = random_gesture(7, 4, box_of(rest));
+  const Gesture gesture = random_gesture(7, 4, key_box(rest));
   Hierarchy before = rest;
   for (int frame = 1; frame <= 20; ++frame) {
-    const Hierarchy now = deformed(rest, map_of(gesture, frame / 60.));
+    const Hierarchy now = deformed(rest, landscape_rules(), map_of(gesture, frame / 60.));
     for (int e = 0; e < rest.size(); ++e) {
       if (rest.type(e).name != "pine" && rest.type(e).name != "stone") continue;
       const double a = before.present(e) ? before.parameter(e, 0) : 0;
@@ -213,7 +176,7 @@ TEST(GrammarLandscapeRules, ParametersOfATaggedHouseStayUnderAGesture) {
   const auto held = grammar.state().parameters(house);
   const std::vector<double> before(held.begin(), held.end());
   for (int g = 0; g < 5; ++g) {
-    const auto map = map_of(random_gesture(7, g, box_of(rest)), 1);
+    const auto map = map_of(random_gesture(7, g, key_box(rest)), 1);
     grammar.gesture(0, map, map);
     const auto now = grammar.state().parameters(house);
     EXPECT_TRUE(std::equal(before.begin(), before.end(), now.begin()));
@@ -229,7 +192,7 @@ TEST(GrammarLandscapeRules, AMovedStoneBendsThePath) {
   grammar.edit({stone, Delta::translate({0.5, 1.5, 0})}, Tag{1, Tag::Follow::rigid});
   expect_path_kept(grammar.state(), "edited");
   EXPECT_TRUE(is_same(rest, grammar.state(), stones.front()));
-  const auto map = map_of(random_gesture(7, 3, box_of(rest)), 1);
+  const auto map = map_of(random_gesture(7, 3, key_box(rest)), 1);
   grammar.gesture(0, map, map);
   expect_path_kept(grammar.state(), "edited and deformed");
 }

@@ -13,11 +13,16 @@
 #include "models/grammar/objects/volume_set.h"
 #include "solvers/grammar/grammar.h"
 #include "solvers/grammar/rules/rules.h"
+#include "tests/grammar/rules/deformed_objects.h"
 
 namespace geoprior::grammar {
 namespace {
 
 using Eigen::Vector3d;
+using samples::deformed;
+using samples::deviation;
+using samples::is_same;
+using samples::key_box;
 
 /// The same map, of which nobody knows where it is the identity.
 class UnboundedMap final : public SpatialMap {
@@ -47,22 +52,6 @@ std::vector<Hierarchy> sets() {
   return out;
 }
 
-Eigen::AlignedBox3d box_of_set(const Hierarchy& h) {
-  Eigen::AlignedBox3d box;
-  std::vector<Vector3d> keys;
-  for (int e = 0; e < h.size(); ++e)
-    if (h.present(e)) h.keys(e, keys);
-  for (const Vector3d& x : keys) box.extend(x);
-  return box;
-}
-
-Hierarchy deformed_set(const Hierarchy& rest, const std::shared_ptr<const SpatialMap>& map) {
-  Hierarchy h = rest;
-  Transaction undo(h);
-  derive(h, undo, set_rules(), {0, Delta::free(map)});
-  return h;
-}
-
 std::shared_ptr<const SpatialMap> inflation(const Vector3d& centre, double radius, double amount,
                                             double fraction = 1) {
   Gesture gesture;
@@ -72,12 +61,6 @@ std::shared_ptr<const SpatialMap> inflation(const Vector3d& centre, double radiu
 }
 
 double size_of(const Hierarchy& h, int e) { return h.present(e) ? h.parameter(e, 0) : 0; }
-
-bool same_in_set(const Hierarchy& a, const Hierarchy& b, int e) {
-  const auto p = a.parameters(e), q = b.parameters(e);
-  return a.present(e) == b.present(e) && a.position(e) == b.position(e) &&
-         a.turn(e).coeffs() == b.turn(e).coeffs() && std::equal(p.begin(), p.end(), q.begin());
-}
 
 int pairs_too_close(const Hierarchy& h) {
   int out = 0;
@@ -102,36 +85,17 @@ int nearest_element(const Hierarchy& h, int element) {
                            [&](int a, int b) { return distance(a) < distance(b); });
 }
 
-/// Root mean square over the elements that are still there of that over their key points.
-double deviation_in_set(const Hierarchy& rest, const Hierarchy& h, const SpatialMap& map) {
-  double sum = 0;
-  int count = 0;
-  for (int e = 0; e < rest.size(); ++e) {
-    std::vector<Vector3d> before, after;
-    if (!rest.present(e) || !h.present(e)) continue;
-    rest.keys(e, before);
-    h.keys(e, after);
-    if (before.empty()) continue;
-    double squares = 0;
-    for (std::size_t k = 0; k < before.size(); ++k)
-      squares += (after[k] - map.at(before[k])).squaredNorm();
-    sum += squares / static_cast<double>(before.size());
-    ++count;
-  }
-  return std::sqrt(sum / count);
-}
-
 TEST(GrammarSetRules, ElementsKeepTheirDistanceAndFollowTheMap) {
   for (const Hierarchy& rest : sets()) {
-    const auto box = box_of_set(rest);
+    const auto box = key_box(rest);
     double ratio = 0;
     constexpr int kSetGestures = 25;
     for (int g = 0; g < kSetGestures; ++g) {
       const auto map = map_of(random_gesture(7, g, box), 1);
-      const Hierarchy h = deformed_set(rest, map);
+      const Hierarchy h = deformed(rest, set_rules(), map);
       h.require_valid();
       EXPECT_EQ(pairs_too_close(h), 0) << rest.type(0).name << " gesture " << g;
-      ratio += deviation_in_set(rest, h, *map) / deviation_in_set(rest, rest, *map) / kSetGestures;
+      ratio += deviation(rest, h, *map) / deviation(rest, rest, *map) / kSetGestures;
     }
     EXPECT_LT(ratio, 0.5) << rest.type(0).name;
   }
@@ -140,17 +104,17 @@ TEST(GrammarSetRules, ElementsKeepTheirDistanceAndFollowTheMap) {
 TEST(GrammarSetRules, TheIdentityChangesNothing) {
   const auto identity = std::make_shared<AffineMap>(Eigen::Affine3d::Identity());
   for (const Hierarchy& rest : sets()) {
-    const Hierarchy h = deformed_set(rest, identity);
-    for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(same_in_set(rest, h, e));
+    const Hierarchy h = deformed(rest, set_rules(), identity);
+    for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(is_same(rest, h, e));
   }
 }
 
 TEST(GrammarSetRules, CandidatesGrowWhereItIsStretchedElementsShrinkWhereItIsSqueezed) {
   for (const Hierarchy& rest : sets()) {
     const Vector3d centre = rest.position(rest.children(0)[0]);
-    const double radius = 0.4 * box_of_set(rest).diagonal().norm();
-    const Hierarchy wide = deformed_set(rest, inflation(centre, radius, 1.2));
-    const Hierarchy narrow = deformed_set(rest, inflation(centre, radius, -0.5));
+    const double radius = 0.4 * key_box(rest).diagonal().norm();
+    const Hierarchy wide = deformed(rest, set_rules(), inflation(centre, radius, 1.2));
+    const Hierarchy narrow = deformed(rest, set_rules(), inflation(centre, radius, -0.5));
     double grown = 0, shrunk = 0;
     for (const int e : rest.children(0)) {
       if (!rest.present(e)) grown += size_of(wide, e);
@@ -164,10 +128,11 @@ TEST(GrammarSetRules, CandidatesGrowWhereItIsStretchedElementsShrinkWhereItIsSqu
 TEST(GrammarSetRules, NothingPopsFromFrameToFrame) {
   for (const Hierarchy& rest : sets()) {
     const Vector3d centre = rest.position(rest.children(0)[0]);
-    const double radius = 0.4 * box_of_set(rest).diagonal().norm();
+    const double radius = 0.4 * key_box(rest).diagonal().norm();
     Hierarchy before = rest;
     for (int frame = 1; frame <= 20; ++frame) {
-      const Hierarchy now = deformed_set(rest, inflation(centre, radius, 0.5, frame / 60.));
+      const Hierarchy now =
+          deformed(rest, set_rules(), inflation(centre, radius, 0.5, frame / 60.));
       for (const int e : rest.children(0))
         EXPECT_LT(std::abs(size_of(now, e) - size_of(before, e)), 0.3) << frame;
       before = now;
@@ -179,16 +144,16 @@ TEST(GrammarSetRules, NothingPopsFromFrameToFrame) {
 /// if all of the set were looked at.
 TEST(GrammarSetRules, ALocalGestureIsTheSameAsOneOnAll) {
   for (const Hierarchy& rest : {make_volume_set({}, 1), spaced_forest(3000)}) {
-    const auto box = box_of_set(rest);
+    const auto box = key_box(rest);
     const auto map = inflation(box.center(), 0.12 * box.diagonal().norm(), -0.4);
     Hierarchy local = rest;
     Transaction undo(local);
     derive(local, undo, set_rules(), {0, Delta::free(map)});
-    const Hierarchy whole = deformed_set(rest, std::make_shared<UnboundedMap>(map));
+    const Hierarchy whole = deformed(rest, set_rules(), std::make_shared<UnboundedMap>(map));
     int changed = 0;
     for (const int e : rest.children(0)) {
-      EXPECT_TRUE(same_in_set(local, whole, e));
-      changed += same_in_set(local, rest, e) ? 0 : 1;
+      EXPECT_TRUE(is_same(local, whole, e));
+      changed += is_same(local, rest, e) ? 0 : 1;
     }
     EXPECT_GT(changed, 5);
     EXPECT_LT(undo.touched().size(), 0.5 * rest.size());
@@ -211,16 +176,16 @@ TEST(GrammarSetRules, RewritesOfALocalGestureDoNotGrowWithTheForest) {
 
 TEST(GrammarSetRules, BytesDoNotDependOnThreads) {
   const Hierarchy rest = spaced_forest(6000);
-  const auto map = map_of(random_gesture(3, 1, box_of_set(rest)), 1);
+  const auto map = map_of(random_gesture(3, 1, key_box(rest)), 1);
   std::vector<Hierarchy> out(2);
   for (const int threads : {1, 2})
-    with_threads(threads, [&] { out[threads - 1] = deformed_set(rest, map); });
-  for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(same_in_set(out[0], out[1], e));
+    with_threads(threads, [&] { out[threads - 1] = deformed(rest, set_rules(), map); });
+  for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(is_same(out[0], out[1], e));
 }
 
 TEST(GrammarSetRules, ItemsStayAtTheirPlaceOfTheSurface) {
   const Hierarchy rest = make_surface_set({}, 1);
-  const Hierarchy h = deformed_set(rest, map_of(random_gesture(7, 3, box_of_set(rest)), 1));
+  const Hierarchy h = deformed(rest, set_rules(), map_of(random_gesture(7, 3, key_box(rest)), 1));
   for (const int e : rest.children(0)) {
     const TrianglePlace place{static_cast<int>(h.parameter(e, ItemParameter::kTriangle)),
                               h.parameter(e, ItemParameter::kB0),
@@ -233,7 +198,7 @@ TEST(GrammarSetRules, ItemsStayAtTheirPlaceOfTheSurface) {
 TEST(GrammarSetRules, ConifersStayUprightOnTheGround) {
   const Hierarchy rest = spaced_forest(400);
   for (int g = 0; g < 10; ++g) {
-    const Hierarchy h = deformed_set(rest, map_of(random_gesture(7, g, box_of_set(rest)), 1));
+    const Hierarchy h = deformed(rest, set_rules(), map_of(random_gesture(7, g, key_box(rest)), 1));
     for (const int e : h.children(0)) {
       EXPECT_EQ(h.position(e).z(), 0);
       EXPECT_EQ(h.turn(e).x(), 0);
@@ -254,7 +219,7 @@ TEST(GrammarSetRules, NeighboursMakeRoomForAnEditedElement) {
     EXPECT_LT(size_of(h, other), 1) << rest.type(0).name;
     EXPECT_EQ(pairs_too_close(h), 0);
     int changed = 0;
-    for (const int all : h.children(0)) changed += same_in_set(h, rest, all) ? 0 : 1;
+    for (const int all : h.children(0)) changed += is_same(h, rest, all) ? 0 : 1;
     EXPECT_LT(changed, 60);
   }
 }
@@ -266,7 +231,7 @@ TEST(GrammarSetRules, ALargerRadiusIsKeptAndNeighboursShrink) {
     const double radius = 1.6 * rest.parameter(e, 1);
     grammar.edit({e, Delta::set(1, radius)}, Tag{1, Tag::Follow::rigid});
     EXPECT_EQ(pairs_too_close(grammar.state()), 0);
-    const auto map = map_of(random_gesture(7, 2, box_of_set(rest)), 1);
+    const auto map = map_of(random_gesture(7, 2, key_box(rest)), 1);
     grammar.gesture(0, map, map);
     const Hierarchy& h = grammar.state();
     EXPECT_EQ(pairs_too_close(h), 0);
@@ -296,7 +261,7 @@ TEST(GrammarSetRules, AnEditOntoAnotherEditIsRefusedAndTakenBack) {
   const Hierarchy before = grammar.state();
   const Vector3d onto = before.position(first) - before.position(second);
   EXPECT_THROW(grammar.edit({second, Delta::translate(onto)}, {}), Error);
-  for (int e = 0; e < before.size(); ++e) EXPECT_TRUE(same_in_set(before, grammar.state(), e));
+  for (int e = 0; e < before.size(); ++e) EXPECT_TRUE(is_same(before, grammar.state(), e));
   EXPECT_THROW(grammar.edit({second, Delta::set(GrainParameter::kCandidate, 1)}, {}), Error);
 }
 

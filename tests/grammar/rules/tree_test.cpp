@@ -204,6 +204,23 @@ TEST(GrammarTreeRules, ALengthBeyondTheBoundIsSubdividedAndBeyondThatAnError) {
   }
 }
 
+TEST(GrammarTreeRules, ABranchIsGivenChildrenOrLosesTheThinnest) {
+  const Hierarchy rest = make_tree({}, 1);
+  int branch = 1;
+  while (rest.children(branch).size() < 2) ++branch;
+  Hierarchy tree = rest;
+  EXPECT_EQ(deform_tree(tree, branch, Delta::children(3)).spawned, 3);
+  expect_consistent_tree(tree);
+  for (int e = 0; e < rest.size(); ++e) EXPECT_TRUE(same_branch_bits(rest, tree, e));
+  for (int e = rest.size(); e < tree.size(); ++e) EXPECT_EQ(tree.parent(e), branch);
+
+  Hierarchy fewer = rest;
+  const int kept = rest.children(branch)[1];
+  fewer.set_tag(kept, {1, Tag::Follow::rigid});
+  EXPECT_GT(deform_tree(fewer, branch, Delta::children(-1000)).removed, 0);
+  for (const int child : rest.children(branch)) EXPECT_EQ(fewer.present(child), child == kept);
+}
+
 TEST(GrammarTreeRules, TagsKeepParametersOrPlaces) {
   const Hierarchy rest = make_tree({}, 2);
   const int tagged = rest.parent(outermost_branch(rest));
