@@ -1,6 +1,6 @@
 # Libraries for which Debian ships no CMake package, or one that does too much: CGAL, CHOLMOD (supernodal
 # sparse Cholesky) and the BLAS below it, FFTW (Fourier transforms), LEMON (network flows), nauty (canonical forms of graphs), Lua
-# (scripts), Ceres (non-linear least squares).
+# (scripts), serd and raptor (RDF), Ceres (non-linear least squares).
 # Also installed, for the projects that link geoprior.
 if(NOT TARGET geoprior_cholmod)
   # CGAL is headers over two number libraries. Its own target compiles all that links it with -frounding-math; here the
@@ -42,6 +42,15 @@ if(NOT TARGET geoprior_cholmod)
   add_library(geoprior_lua INTERFACE IMPORTED)
   target_include_directories(geoprior_lua SYSTEM INTERFACE ${LUA_INCLUDE_DIR} ${LUA_INCLUDE_DIR}/lua5.4)
   target_link_libraries(geoprior_lua INTERFACE ${LUA_LIBRARY})
+
+  # Turtle and N-Triples by serd, RDF/XML by raptor.
+  find_path(SERD_INCLUDE_DIR NAMES serd/serd.h PATH_SUFFIXES serd-0 REQUIRED)
+  find_library(SERD_LIBRARY serd-0 REQUIRED)
+  find_path(RAPTOR_INCLUDE_DIR NAMES raptor2.h PATH_SUFFIXES raptor2 REQUIRED)
+  find_library(RAPTOR_LIBRARY raptor2 REQUIRED)
+  add_library(geoprior_rdf INTERFACE IMPORTED)
+  target_include_directories(geoprior_rdf SYSTEM INTERFACE ${SERD_INCLUDE_DIR} ${RAPTOR_INCLUDE_DIR})
+  target_link_libraries(geoprior_rdf INTERFACE ${SERD_LIBRARY} ${RAPTOR_LIBRARY})
 
   # Ceres' own package names the static library: its copies of Eigen's functions would be merged with ours, which align
   # memory otherwise (EIGEN_MAX_ALIGN_BYTES), and free what the others allocated. The shared one keeps them to itself.

@@ -19,6 +19,8 @@ struct NamedArray {
   std::string unit;  ///< SI, "1" for a ratio
   On on = On::points;
   Eigen::MatrixXd values;
+  /// Where the values are codes 0, 1, …: what each of them stands for. Empty: they are numbers.
+  std::vector<std::string> names = {};
 };
 
 /// One piece of geometry of a frame: triangles, poly-lines, points or a regular grid.

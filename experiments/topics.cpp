@@ -11,7 +11,8 @@
   TOPIC(sketch)                \
   TOPIC(torus)                 \
   TOPIC(assembly)              \
-  TOPIC(grammar)
+  TOPIC(grammar)              \
+  TOPIC(embryo)
 
 /// What experiments/<name> defines.
 #define GEOPRIOR_DECLARE(name) \

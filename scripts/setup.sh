@@ -15,12 +15,14 @@ packages=(
   # libraries
   libeigen3-dev libtbb-dev libcgal-dev libvtk9-dev libhdf5-dev libssl-dev
   libsuitesparse-dev libopenblas-dev libpugixml-dev libfftw3-dev liblemon-dev libnauty2-dev libceres-dev libspectra-dev
-  liblua5.4-dev
+  liblua5.4-dev libserd-dev libraptor2-dev
   libopenimageio-dev openimageio-tools python3-imath libsndfile1-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   # plots, report and the checks that a run needs nothing of ours
   python3 python3-numpy python3-h5py python3-matplotlib python3-ezdxf
+  # engines that queries and rules of an ontology are held against
+  python3-rdflib gringo clasp
   # pictures without a display
   xvfb libgl1-mesa-dri fonts-dejavu-core
   # models that nobody here made, and the converter that reads them

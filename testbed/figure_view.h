@@ -22,6 +22,7 @@ struct FurtherRow {
   std::string label;                 ///< absent: the part's name
   std::optional<std::string> color_by;
   std::vector<std::string> classes;
+  std::string labels;
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;
@@ -63,8 +64,12 @@ struct FigureView {
   std::string part = "surface";
   std::string label;  ///< of the rows, when others are above or below; absent: the part's
   std::optional<std::string> color_by;
-  std::vector<std::string> classes;  ///< of `color_by`: the names of its integers 0, 1, …
-  bool identities = false;           ///< the integers of `color_by` tell things apart, 0 is none
+  /// Of `color_by`: the names of its integers 0, 1, …; empty: those that the array has, if any.
+  std::vector<std::string> classes;
+  /// A named array of the part or of overlays, whose names stand beside what they are of; empty:
+  /// none.
+  std::string labels;
+  bool identities = false;  ///< the integers of `color_by` tell things apart, 0 is none
   Shading shading = Shading::smooth;
   Material material =
       Material::clay;  ///< paper: an open sheet with two sides; water: reflects a sky

@@ -175,7 +175,9 @@ void add_topic_command(CommandLine& line, TopicCommandRequest& request) {
   command->add_option(about.input, request.input, about.input_meaning)->required();
   const auto options = about.default_options();
   for (const OptionRow& row : list_options([&](OptionVisitor& v) { options->visit(v); })) {
-    command->add_option(flag_of(row.key), request.options[row.key], row.doc)->type_name(row.type);
+    const bool is_second = row.key == about.second_argument;
+    const std::string names = flag_of(row.key) + (is_second ? "," + row.key : "");
+    command->add_option(names, request.options[row.key], row.doc)->type_name(row.type);
   }
 }
 

@@ -190,6 +190,8 @@ struct TopicCommand {
   std::string input_meaning;  ///< one line
   std::function<std::unique_ptr<OptionSet>()> default_options;
   std::function<CommandText(const std::string& input, const OptionSet&)> run;
+  /// The option that may stand behind the input without its flag; empty: none.
+  std::string second_argument = {};
 };
 
 /// Builds a TopicCommand from typed pieces: `run(input, const Options&)` returns a CommandText.

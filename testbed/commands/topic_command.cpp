@@ -21,6 +21,7 @@ std::unique_ptr<OptionSet> read_flags(const TopicCommandRequest& request) {
   const TopicCommand& command = *request.command;
   const auto listed = command.default_options();
   TomlNode table;
+  table.place = "command line";
   for (const OptionRow& row : list_options([&](OptionVisitor& v) { listed->visit(v); })) {
     const std::string& written = request.options.at(row.key);
     if (!written.empty()) table.set(row.key, flag_value(row, written));

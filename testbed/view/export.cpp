@@ -1,7 +1,7 @@
 #include "testbed/view/export.h"
 
 // Frames of a run as files of other tools: out/<case>/<variant>/<part>_0000.obj or .ply, or one
-// animated out/<case>/<variant>/<part>.glb.
+// animated out/<case>/<variant>/<part>.glb, whose nodes are structures where the part has any.
 
 #include <algorithm>
 #include <array>
@@ -19,6 +19,7 @@
 #include "testbed/runner/journal/run_record.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/view/mesh_text.h"
+#include "testbed/view/structure_export.h"
 
 namespace geoprior {
 namespace {
@@ -118,22 +119,25 @@ bool same_topology(const std::vector<Part>& parts) {
   });
 }
 
-/// Seconds of the frames in the animation: a time as it is, any other parameter spread evenly over
-/// 24 frames a second.
+/// Seconds of the frames in the animation: a time as it is, a day an eighth of a second, any other
+/// parameter spread evenly over 24 frames a second.
 std::vector<double> animation_times(const CaseRecord& c, const std::vector<FrameFile>& frames) {
   constexpr double kFramesPerSecond = 24;
-  const bool is_time = c.parameter_unit == "s";
+  constexpr double kSecondsADay = 0.125;
+  const bool is_time = c.parameter_unit == "s", is_day = c.parameter_unit == "d";
   std::vector<double> times;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    times.push_back(is_time ? frames[i].parameter - frames.front().parameter
-                            : static_cast<double>(i) / kFramesPerSecond);
+    const double since = frames[i].parameter - frames.front().parameter;
+    times.push_back(is_time  ? since
+                    : is_day ? kSecondsADay * since
+                             : static_cast<double>(i) / kFramesPerSecond);
   }
   return times;
 }
 
 TriMesh mesh_of(const Part& part) { return {part.points, part.triangles}; }
 
-/// One animation, or a still a frame where the topology changes.
+/// One animation, or a still a frame where the topology changes and there are no structures.
 int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
                const std::string& part_name, const std::vector<FrameFile>& frames,
                ExportFolder& out) {
@@ -141,6 +145,12 @@ int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& v
   for (const FrameFile& frame : frames) {
     throw_if_stopped();
     parts.push_back(run.part(frame.file));
+  }
+  if (have_structures(parts)) {
+    const std::string glb =
+        structures_glb(parts, animation_times(c, frames), variant.name + " " + part_name);
+    write_file_atomically(out.folder_of(c, variant) / (part_name + ".glb"), std::string_view(glb));
+    return 1;
   }
   const bool triangles = std::all_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.kind == Part::Kind::triangles && part.triangles.rows() > 0;

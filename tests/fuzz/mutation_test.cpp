@@ -97,6 +97,9 @@ TEST(LongFuzz, AssemblyReaderAcceptsOrThrowsError) {
 TEST(LongFuzz, GestureReaderAcceptsOrThrowsError) {
   run_on("drag.gesture.toml", {corpus_file("drag.gesture.toml")}, fuzz_gesture);
 }
+TEST(LongFuzz, TurtleReaderAcceptsOrThrowsError) { run(".ttl", fuzz_turtle); }
+TEST(LongFuzz, NTriplesReaderAcceptsOrThrowsError) { run(".nt", fuzz_ntriples); }
+TEST(LongFuzz, RdfXmlReaderAcceptsOrThrowsError) { run(".rdf", fuzz_rdfxml); }
 TEST(LongFuzz, ScriptsOfRulesRunOrThrowError) {
   run_on("rules.lua", {corpus_file("rules.lua")}, fuzz_rules);
 }

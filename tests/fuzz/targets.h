@@ -30,6 +30,9 @@ void fuzz_xtrackcad(const std::uint8_t* data, std::size_t size);
 void fuzz_gesture(const std::uint8_t* data, std::size_t size);
 void fuzz_rules(const std::uint8_t* data, std::size_t size);
 void fuzz_gltf_parts(const std::uint8_t* data, std::size_t size);
+void fuzz_turtle(const std::uint8_t* data, std::size_t size);
+void fuzz_ntriples(const std::uint8_t* data, std::size_t size);
+void fuzz_rdfxml(const std::uint8_t* data, std::size_t size);
 // These readers open a file: the bytes are written to one.
 void fuzz_points(const std::uint8_t* data, std::size_t size);
 void fuzz_svg(const std::uint8_t* data, std::size_t size);

@@ -7,6 +7,7 @@
 
 #include "testbed/formats/wav_file.h"
 #include "testbed/topic.h"
+#include "tests/embryo/ontology/small_ontology.h"
 #include "tests/testbed/formats/gltf_samples.h"
 #include "tests/testbed/program_process.h"
 
@@ -353,6 +354,73 @@ void add_grammar(std::map<std::string, NamedFile>& files) {
                                     "nothing"};
 }
 
+const std::string kEmbryoRules =
+    "upto(S, S) :- stage(S).\nupto(S, T) :- upto(S, R), next(R, T).\n"
+    "exists(E, S) :- existsFrom(E, A), existsUntil(E, B), upto(A, S), upto(S, B), not "
+    "absent(E).\n"
+    "absent(E) :- selected(D), disables(D, P), actsOn(P, E), disables(D, E).\n"
+    "inactive(P) :- selected(D), disables(D, P).\n";
+
+void add_embryo(std::map<std::string, NamedFile>& files) {
+  const auto ontology = writes("mine.ttl", [](bool changed) {
+    std::string text = embryo::test::small_ontology();
+    const std::string radii = "e:radii (0.2 0.2 0.4)";
+    return changed ? text.replace(text.find(radii), radii.size(), "e:radii (0.2 0.2 0.5)") : text;
+  });
+  const auto mine = [=](const fs::path& folder) {
+    ontology(folder, false);
+    write_text(folder / "mine.rules", kEmbryoRules);
+  };
+  const std::string scene =
+      "ontology = \"mine.ttl\"\nrules = \"mine.rules\"\nparameter_set = \"Slow\"\ndays = [15, "
+      "19]\n";
+  files["embryo ontology"] = {[=](const fs::path& folder, bool changed) {
+                                mine(folder);
+                                ontology(folder, changed);
+                              },
+                              scene,
+                              {"mine.ttl"},
+                              "development"};
+  files["embryo rules"] = {[=](const fs::path& folder, bool changed) {
+                             mine(folder);
+                             if (changed)
+                               write_text(folder / "mine.rules",
+                                          kEmbryoRules +
+                                              "absent(E) :- type(E, e:EmbryologicalEntity), "
+                                              "mirrorOf(E, _).\n");
+                           },
+                           scene,
+                           {"mine.rules"},
+                           "development"};
+  files["embryo additions"] = {
+      [=](const fs::path& folder, bool changed) {
+        mine(folder);
+        write_text(folder / "more.ttl",
+                   std::string("@prefix e: <urn:geoprior:embryo#> .\n"
+                               "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+                               "e:Bud a e:EmbryologicalEntity ; rdfs:label \"bud\" ; e:side "
+                               "\"median\" ; e:kind \"bud\" ; e:existsFrom e:S2 ; e:existsUntil "
+                               "e:S3 .\ne:BudS2 a e:SpatioTemporalEntity ; e:of e:Bud ; e:during "
+                               "e:S2 ; e:geometry [ a e:Ovoid ; e:position (0 0.3 0) ; e:axis (0 0 "
+                               "1) ; e:up (1 0 0) ; e:radii (0.1 0.1 ") +
+                       (changed ? "0.2" : "0.3") + ") ; e:unit \"mm\" ; e:source e:Drawn ] .\n");
+      },
+      scene + "additions = [\"more.ttl\"]\n",
+      {"more.ttl"},
+      "development"};
+  files["embryo expected"] = {
+      [=](const fs::path& folder, bool changed) {
+        mine(folder);
+        write_text(folder / "mine.toml", std::string("[Horseshoe]\n") +
+                                             (changed ? "absnt" : "absent") + " = [\"Kidney\"]\n");
+      },
+      scene + "disease = \"Horseshoe\"\nexpected = \"mine.toml\"\n",
+      {"mine.toml"},
+      "development",
+      {},
+      "absnt"};
+}
+
 }  // namespace
 
 const std::map<std::string, NamedFile>& named_files() {
@@ -365,6 +433,7 @@ const std::map<std::string, NamedFile>& named_files() {
     add_skinning_and_sketch(made);
     add_assembly(made);
     add_grammar(made);
+    add_embryo(made);
     return made;
   }();
   return files;

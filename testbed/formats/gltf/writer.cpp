@@ -1,100 +1,16 @@
 #include "testbed/formats/gltf/writer.h"
 
 #include <cmath>
-#include <cstring>
-#include <limits>
-#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "testbed/formats/atomic_file.h"
+#include "testbed/formats/gltf/builder.h"
 
 namespace geoprior {
 namespace {
 
+using gltf::GlbBuilder;
 using nlohmann::json;
-
-constexpr int kFloat = 5126;
-constexpr int kUnsignedInt = 5125;
-constexpr int kVertexTarget = 34962;
-constexpr int kIndexTarget = 34963;
-
-/// Binary chunk and the JSON that describes it, grown together.
-class GltfBuilder {
- public:
-  /// Appends an accessor of its own buffer view; returns its index.
-  template <class T>
-  int add(const std::vector<T>& values, const char* type, int columns, int component,
-          int target = 0) {
-    static_assert(sizeof(T) == 4);
-    json view{
-        {"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (target != 0) view["target"] = target;
-    document_["bufferViews"].push_back(view);
-    document_["accessors"].push_back({{"bufferView", document_["bufferViews"].size() - 1},
-                                      {"componentType", component},
-                                      {"count", values.size() / columns},
-                                      {"type", type}});
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + values.size() * sizeof(T));
-    if (!values.empty()) std::memcpy(bytes_.data() + at, values.data(), values.size() * sizeof(T));
-    return static_cast<int>(document_["accessors"].size()) - 1;
-  }
-
-  /// Positions or their differences; glTF wants their bounds.
-  int add_vectors(const Eigen::MatrixX3d& V) {
-    std::vector<float> values;
-    values.reserve(V.size());
-    for (Eigen::Index v = 0; v < V.rows(); ++v)
-      for (int k = 0; k < 3; ++k) values.push_back(static_cast<float>(V(v, k)));
-    const int index = add(values, "VEC3", 3, kFloat, kVertexTarget);
-    const Eigen::RowVector3f low = V.cast<float>().colwise().minCoeff();
-    const Eigen::RowVector3f high = V.cast<float>().colwise().maxCoeff();
-    json& accessor = document_["accessors"][index];
-    accessor["min"] = {low[0], low[1], low[2]};
-    accessor["max"] = {high[0], high[1], high[2]};
-    return index;
-  }
-
-  json& document() { return document_; }
-
-  [[nodiscard]] std::string glb(const std::string& file) {
-    document_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
-    std::string text = document_.dump(-1, ' ', false, json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::size_t size = 12 + 8 + text.size() + 8 + bytes_.size();
-    if (size > std::numeric_limits<std::uint32_t>::max())
-      throw Error("the file would have " + std::to_string(size) + " bytes", file, "at most 4 GB");
-    std::string out;
-    out.reserve(size);
-    for (const std::size_t word :
-         {std::size_t{0x46546C67}, std::size_t{2}, size, text.size(), std::size_t{0x4E4F534A}})
-      append_word(out, word);
-    out += text;
-    append_word(out, bytes_.size());
-    append_word(out, 0x004E4942);
-    out += bytes_;
-    return out;
-  }
-
- private:
-  static void append_word(std::string& out, std::size_t word) {
-    for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>((word >> (8 * i)) & 0xFF));
-  }
-  json document_;
-  std::string bytes_;
-};
-
-/// Times are compared in single precision, in which they are stored.
-void require_times(const std::vector<double>& times_s, const std::string& where) {
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const auto time = static_cast<float>(times_s[i]);
-    if (!(time >= 0) || !std::isfinite(time) ||
-        (i > 0 && !(time > static_cast<float>(times_s[i - 1])))) {
-      throw Error("the time of frame " + std::to_string(i) + " is " + std::to_string(times_s[i]),
-                  where, "finite, >= 0, increasing (in single precision)");
-    }
-  }
-}
 
 void require_sequence(const std::string& file, const TriMesh& base,
                       const std::vector<Eigen::MatrixX3d>& frames,
@@ -115,14 +31,14 @@ void require_sequence(const std::string& file, const TriMesh& base,
     }
     if (!frames[i].allFinite()) throw Error("a position of " + frame + " is not finite", file);
   }
-  require_times(times_s, file);
+  gltf::require_times(times_s, file);
 }
 
 void require_chain(const std::vector<GltfLink>& links, const std::vector<double>& times_s,
                    const std::string& name) {
   if (links.empty() || times_s.empty())
     throw Error("has no links or no times", name, "one or more");
-  require_times(times_s, name);
+  gltf::require_times(times_s, name);
   for (std::size_t i = 0; i < links.size(); ++i) {
     const GltfLink& link = links[i];
     const std::string where = name + ": link " + std::to_string(i) + " '" + link.name + "'";
@@ -137,26 +53,13 @@ void require_chain(const std::vector<GltfLink>& links, const std::vector<double>
   }
 }
 
-/// Positions and indices.
-json primitive_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin) {
-  std::vector<std::uint32_t> indices;
-  indices.reserve(mesh.F.size());
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) indices.push_back(static_cast<std::uint32_t>(mesh.F(f, k)));
-  json primitive;
-  primitive["attributes"]["POSITION"] = builder.add_vectors(mesh.V.rowwise() - origin.transpose());
-  primitive["indices"] = builder.add(indices, "SCALAR", 1, kUnsignedInt, kIndexTarget);
-  return primitive;
-}
-
-json mesh_of(GltfBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin,
+json mesh_of(GlbBuilder& builder, const TriMesh& mesh, const Eigen::Vector3d& origin,
              const std::string& name) {
-  return {{"name", name}, {"primitives", json::array({primitive_of(builder, mesh, origin)})}};
+  return {{"name", name}, {"primitives", json::array({builder.primitive(mesh, origin)})}};
 }
 
 /// A document of one node that has the first mesh.
 void begin_one_node(json& document, const std::string& name) {
-  document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
   document["scene"] = 0;
   document["scenes"] = json::array({{{"nodes", {0}}}});
   document["nodes"] = json::array({{{"name", name}, {"mesh", 0}}});
@@ -173,16 +76,12 @@ std::vector<float> turn_keys(const GltfLink& link) {
   return keys;
 }
 
-void add_turns(GltfBuilder& builder, const std::vector<GltfLink>& links,
+void add_turns(GlbBuilder& builder, const std::vector<GltfLink>& links,
                const std::vector<double>& times_s, const std::string& name) {
-  const std::vector<float> times(times_s.begin(), times_s.end());
-  const int input = builder.add(times, "SCALAR", 1, kFloat);
-  json& accessor = builder.document()["accessors"][input];
-  accessor["min"] = {times.front()};
-  accessor["max"] = {times.back()};
+  const int input = builder.add_times(times_s);
   json samplers = json::array(), channels = json::array();
   for (int i = 1; i < std::ssize(links); ++i) {
-    const int output = builder.add(turn_keys(links[i]), "VEC4", 4, kFloat);
+    const int output = builder.add(turn_keys(links[i]), "VEC4", 4);
     channels.push_back(
         {{"sampler", samplers.size()}, {"target", {{"node", i}, {"path", "rotation"}}}});
     samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
@@ -192,17 +91,13 @@ void add_turns(GltfBuilder& builder, const std::vector<GltfLink>& links,
       json::array({{{"name", name}, {"samplers", samplers}, {"channels", channels}}});
 }
 
-void add_animation(GltfBuilder& builder, const std::vector<double>& times_s,
+void add_animation(GlbBuilder& builder, const std::vector<double>& times_s,
                    const std::string& name) {
   const std::size_t n = times_s.size();
-  const std::vector<float> times(times_s.begin(), times_s.end());
   std::vector<float> weights(n * n, 0.0F);  // one target a frame: at its time alone
   for (std::size_t i = 0; i < n; ++i) weights[i * n + i] = 1.0F;
-  const int input = builder.add(times, "SCALAR", 1, kFloat);
-  const int output = builder.add(weights, "SCALAR", 1, kFloat);
-  json& accessor = builder.document()["accessors"][input];
-  accessor["min"] = {times.front()};
-  accessor["max"] = {times.back()};
+  const int input = builder.add_times(times_s);
+  const int output = builder.add(weights, "SCALAR", 1);
   builder.document()["animations"] = json::array(
       {{{"name", name},
         {"samplers",
@@ -217,10 +112,10 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
                          const std::vector<Eigen::MatrixX3d>& frames,
                          const std::vector<double>& times_s, const std::string& name) {
   require_sequence(file.string(), base, frames, times_s);
-  GltfBuilder builder;
+  GlbBuilder builder;
   json& document = builder.document();
   begin_one_node(document, name);
-  json primitive = primitive_of(builder, base, Eigen::Vector3d::Zero());
+  json primitive = builder.primitive(base);
   json mesh{{"name", name}};
   for (const Eigen::MatrixX3d& frame : frames) {
     primitive["targets"].push_back({{"POSITION", builder.add_vectors(frame - base.V)}});
@@ -234,9 +129,9 @@ void write_glb_animation(const std::filesystem::path& file, const TriMesh& base,
 
 std::string surface_glb(const TriMesh& mesh, const std::string& name) {
   require_sequence(name, mesh, {}, {});
-  GltfBuilder builder;
+  GlbBuilder builder;
   begin_one_node(builder.document(), name);
-  json primitive = primitive_of(builder, mesh, Eigen::Vector3d::Zero());
+  json primitive = builder.primitive(mesh);
   primitive["attributes"]["NORMAL"] = builder.add_vectors(vertex_normals(mesh));
   builder.document()["meshes"] =
       json::array({{{"name", name}, {"primitives", json::array({primitive})}}});
@@ -246,9 +141,8 @@ std::string surface_glb(const TriMesh& mesh, const std::string& name) {
 std::string rigid_chain_glb(const std::vector<GltfLink>& links, const std::vector<double>& times_s,
                             const std::string& name) {
   require_chain(links, times_s, name);
-  GltfBuilder builder;
+  GlbBuilder builder;
   json& document = builder.document();
-  document["asset"] = {{"version", "2.0"}, {"generator", "geoprior"}};
   document["scene"] = 0;
   document["scenes"] = json::array({{{"name", name}, {"nodes", {0}}}});
   Eigen::Vector3d before = Eigen::Vector3d::Zero();

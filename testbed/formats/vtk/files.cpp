@@ -33,6 +33,7 @@
 #include "testbed/formats/vtk/points.h"
 #include "testbed/formats/vtk/scan.h"
 #include "testbed/formats/vtk/surface_cells.h"
+#include "testbed/formats/vtk/value_names.h"
 
 namespace geoprior {
 namespace {
@@ -83,6 +84,7 @@ void add_fields(const Part& part, double parameter, vtkDataSet& data) {
   kind->SetName("PartKind");
   kind->InsertNextValue(static_cast<int>(part.kind));
   data.GetFieldData()->AddArray(kind);
+  add_value_names(part, *data.GetFieldData());
 }
 
 void check_index(Eigen::Index index, const Part& part, std::size_t cell) {
@@ -308,6 +310,7 @@ Part from_poly_data(vtkPolyData& input, const std::string& where, std::vector<st
   if (part.kind == Part::Kind::lines) part.lines = cell_lists(*data->GetLines());
   read_arrays(*data->GetPointData(), NamedArray::On::points, part);
   read_arrays(*data->GetCellData(), NamedArray::On::cells, part);
+  read_value_names(*input.GetFieldData(), part, where);
   return part;
 }
 
@@ -325,6 +328,7 @@ Part from_image(vtkImageData& data, const std::string& where) {
   }
   read_arrays(*data.GetPointData(), NamedArray::On::points, part);
   read_arrays(*data.GetCellData(), NamedArray::On::cells, part);
+  read_value_names(*data.GetFieldData(), part, where);
   return part;
 }
 

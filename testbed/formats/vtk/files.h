@@ -14,7 +14,8 @@ namespace geoprior {
 std::string part_extension(const Part& part);
 
 /// Bytes of the VTK XML file of a part: binary, zlib, Float64 points, a `TimeValue` field array
-/// with the parameter and each array's unit. The same part gives the same bytes.
+/// with the parameter, each array's unit and the names of its values (value_names.h). The same part
+/// gives the same bytes.
 std::string part_to_vtk_xml(const Part& part, double parameter);
 
 /// Reads back what `part_to_vtk_xml` wrote (any valid .vtp or .vti), in this process: for frames

@@ -2,17 +2,21 @@
 
 #include <limits>
 
+#include "testbed/formats/vtk/value_names.h"
+
 namespace geoprior {
 namespace {
 
-/// Least bytes of an array: two texts, where it is, rows and columns.
-constexpr std::size_t kArrayBytes = 4 * sizeof(std::size_t) + 1;
+/// Least bytes of an array: two texts, where it is, rows, columns and how many names it has.
+constexpr std::size_t kArrayBytes = 5 * sizeof(std::size_t) + 1;
 
 void write_array(const NamedArray& array, StateWriter& out) {
   out.text(array.name);
   out.text(array.unit);
   out.number(array.on == NamedArray::On::points ? char{1} : char{0});
   out.matrix(array.values);
+  out.number(array.names.size());
+  for (const std::string& name : array.names) out.text(name);
 }
 
 NamedArray read_array(StateReader& in) {
@@ -21,6 +25,8 @@ NamedArray read_array(StateReader& in) {
   array.unit = in.text();
   array.on = in.number<char>() != 0 ? NamedArray::On::points : NamedArray::On::cells;
   in.matrix(array.values);
+  array.names.resize(in.count(sizeof(std::size_t)));
+  for (std::string& name : array.names) name = in.text();
   return array;
 }
 
@@ -58,8 +64,9 @@ void require_grid(const Part& part, const std::string& where) {
   }
 }
 
-void require_rows(const Part& part, const std::string& where) {
+void require_arrays(const Part& part, const std::string& where) {
   for (const NamedArray& array : part.arrays) {
+    require_codes(array, where);
     if (array.values.rows() == part.count(array.on)) continue;
     throw Error("array '" + array.name + "' has " + std::to_string(array.values.rows()) + " rows",
                 where,
@@ -107,7 +114,7 @@ Part part_from_bytes(const State& bytes, std::optional<double>& parameter,
   in.require_end();
   require_points(part, where);
   require_grid(part, where);
-  require_rows(part, where);
+  require_arrays(part, where);
   return part;
 }
 

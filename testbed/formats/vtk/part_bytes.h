@@ -12,7 +12,7 @@ namespace geoprior {
 State part_to_bytes(const Part& part, std::optional<double> parameter);
 
 /// Reads them back. The bytes may be anything: what is returned has indices of its points, sizes of
-/// its grid and rows of its arrays that fit together.
+/// its grid, rows of its arrays and names of their values that fit together.
 /// @throws Error  naming `where` and what does not fit
 Part part_from_bytes(const State& bytes, std::optional<double>& parameter,
                      const std::string& where);

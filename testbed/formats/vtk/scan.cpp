@@ -19,6 +19,9 @@ constexpr int kDeepest = 32;  // VTK's own files: 7
 /// the smallest value of an array is a bit, though hardly of a compressed one.
 constexpr double kMostValuesAByte = 8 * 1032;
 
+/// Most texts of an array: each takes VTK 32 bytes and more, and a zero byte of the file ends one.
+constexpr std::uint64_t kMostTexts = 1U << 20;
+
 constexpr std::string_view kSpace = " \t\r\n";
 
 bool is_count(std::string_view attribute) {
@@ -80,6 +83,7 @@ class VtkXmlScan {
   struct Tag {
     std::string_view name, type, format, encoding;
     std::optional<std::uint64_t> offset;
+    std::uint64_t tuples = 0;
   };
 
   [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const {
@@ -148,6 +152,7 @@ class VtkXmlScan {
     if (name == "format") tag.format = value;
     if (name == "encoding") tag.encoding = value;
     if (name == "offset") tag.offset = number(name, value);
+    if (name == "NumberOfTuples") tag.tuples = number(name, value);
     if (is_count(name)) declare(name, static_cast<double>(number(name, value)));
     if (name == "NumberOfComponents") {
       require_values(name,
@@ -166,6 +171,10 @@ class VtkXmlScan {
   /// An array behind its tag.
   void array(const Tag& tag) {
     require_type(tag.type, place());
+    if (tag.type == "String" && tag.tuples > kMostTexts) {
+      fail("an array has " + std::to_string(tag.tuples) + " texts",
+           "at most " + std::to_string(kMostTexts));
+    }
     if (!encoding_.compressed) return;
     if (tag.offset) {  // whatever the format says: VTK looks for this alone
       appended_.push_back(*tag.offset);

@@ -11,7 +11,7 @@ namespace geoprior {
 ///
 /// @throws Error  naming file and byte: no XML, a document type (entities), elements nested deeper
 ///                than 32, arrays of an unknown type, counts that are no whole number or more than
-///                the file can hold, extents that are no six numbers in order
+///                the file can hold, over 2^20 texts, extents that are no six numbers in order
 void check_vtk_xml(std::string_view text, const std::string& where);
 
 }  // namespace geoprior

@@ -22,6 +22,7 @@ struct PartDifference {
   double moved_m = 0;         ///< farthest of its points
   double largest_change = 0;  ///< of an array's value
   std::string array;          ///< the one that changed most, with its unit
+  bool renamed = false;       ///< values of an array have other names
   std::size_t resized = 0;    ///< frames in which it has another number of points or elements
 };
 
@@ -32,6 +33,7 @@ void compare_arrays(const Part& now, const Part& before, PartDifference& differe
         old->values.cols() != array.values.cols() || array.values.size() == 0) {
       continue;
     }
+    difference.renamed = difference.renamed || array.names != old->names;
     const double change = (array.values - old->values).cwiseAbs().maxCoeff();
     if (!(change > difference.largest_change)) continue;
     difference.largest_change = change;
@@ -106,6 +108,7 @@ class VariantDifference {
     std::string text = "; " + name;
     if (part.resized > 0) text += " of another size in " + std::to_string(part.resized);
     if (part.moved_m > 0) text += " moved by up to " + rounded_text(part.moved_m, 2) + " m";
+    if (part.renamed) text += ", values with other names";
     if (part.largest_change > 0) {
       text += ", " + part.array + " by up to " + rounded_text(part.largest_change, 2);
     }

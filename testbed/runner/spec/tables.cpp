@@ -139,6 +139,7 @@ void describe(OptionVisitor& v, FurtherRow& t) {
   v.value("label", t.label, {.doc = "label of the row; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
   v.value("classes", t.classes, {.doc = "names of the integers 0, 1, … in `color_by`"});
+  v.value("labels", t.labels, {.doc = "named array whose names stand beside what has them"});
   v.value("direction", t.direction, {.doc = "direction towards the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
@@ -169,7 +170,11 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
           {.doc = "label of the rows between `above` and `below`; absent: the part's name"});
   v.value("color_by", t.color_by, {.doc = "array of the part; \"\": plain material"});
   v.value("classes", t.classes,
-          {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale"});
+          {.doc = "names of the integers 0, 1, … in `color_by`: a legend instead of a scale; "
+                  "absent: those that the array has"});
+  v.value("labels", t.labels,
+          {.doc = "named array of the part or of overlays whose names stand beside what has them; "
+                  "\"\": no labels"});
   v.value("identities", t.identities,
           {.doc = "the integers of `color_by` tell things apart and 0 is none: a colour each"});
   describe_choice(v, "shading", t.shading, kShadings, {.doc = "flat: one tone a triangle"});

@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostColumns = 6;
 constexpr std::size_t kMostRows = 8;
 constexpr const char* kObstacles = "obstacles";
 
@@ -137,8 +136,8 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
 
 /// Splits columns evenly into as few rows as the limit allows.
 template <class T>
-std::vector<std::vector<T>> wrap(const std::vector<T>& columns) {
-  const std::size_t rows = (columns.size() + kMostColumns - 1) / kMostColumns;
+std::vector<std::vector<T>> wrap(const std::vector<T>& columns, std::size_t most) {
+  const std::size_t rows = (columns.size() + most - 1) / most;
   const std::size_t width = rows == 0 ? 0 : (columns.size() + rows - 1) / rows;
   std::vector<std::vector<T>> out;
   for (std::size_t i = 0; i < columns.size(); i += width) {
@@ -192,9 +191,10 @@ using Variants = std::vector<std::string>;
 
 /// Variants side by side, a row a state.
 std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& variants,
-                                      const FigureView& view, const OpenedRun& run) {
+                                      const FigureView& view, const OpenedRun& run,
+                                      std::size_t most_columns) {
   std::vector<FigureRow> rows;
-  const auto blocks = wrap(variants);
+  const auto blocks = wrap(variants, most_columns);
   for (const DrawnState& state : drawn_states(c, view)) {
     for (const Variants& block : blocks) {
       FigureRow row;
@@ -210,10 +210,11 @@ std::vector<FigureRow> rows_of_states(const CaseRecord& c, const Variants& varia
 
 /// States side by side, a row a variant.
 std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& variants,
-                                        const FigureView& view, const OpenedRun& run) {
+                                        const FigureView& view, const OpenedRun& run,
+                                        std::size_t most_columns) {
   std::vector<FigureRow> rows;
   for (const std::string& variant : variants) {
-    for (const std::vector<DrawnState>& block : wrap(drawn_states(c, view))) {
+    for (const std::vector<DrawnState>& block : wrap(drawn_states(c, view), most_columns)) {
       FigureRow row;
       if (variants.size() > 1) row.label = display_name(variant);
       for (const DrawnState& state : block) {
@@ -262,7 +263,8 @@ std::string with_unit(double value, const std::string& unit) {
   return std::string(text.data()) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
 
-std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view) {
+std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view,
+                                     std::size_t most_columns) {
   const RunRecord& record = run.record();
   const auto cases = choose(view.cases, case_names(record), "figure_view.cases");
   const Variants variants = choose(view.variants, variant_names(record), "figure_view.variants");
@@ -270,8 +272,8 @@ std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& vie
   for (const CaseRecord& c : record.cases) {
     if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
     const bool states_across = view.across == FigureView::Across::states;
-    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run)
-                                        : rows_of_states(c, variants, view, run)) {
+    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run, most_columns)
+                                        : rows_of_states(c, variants, view, run, most_columns)) {
       if (rows.size() == kMostRows) return rows;
       if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
       row.has_headings = rows.empty() || !same_labels(rows.back(), row);

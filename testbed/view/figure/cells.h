@@ -14,6 +14,9 @@ namespace geoprior {
 /// Overlays that are of the sheet's own stuff, whose colours do not tell overlays apart.
 inline constexpr std::string_view kLipDetail = "lip_detail", kFibres = "fibres";
 
+/// Panels side by side, and where names are written beside what they show.
+inline constexpr std::size_t kMostColumns = 6, kMostLabelledColumns = 3;
+
 struct NamedPart {
   std::string name;
   Part part;
@@ -36,12 +39,13 @@ struct FigureRow {
   std::vector<FigureCell> cells;
 };
 
-/// Which states are drawn, loaded from the run's files: variants as columns (wrapped past six),
-/// parameters and cases as rows (at most eight), or with `across` parameters as columns and
-/// variants as rows. The frame nearest to a wanted parameter is taken, and the label gives the
-/// parameter it really has; parameters with the same nearest frame make one row.
+/// Which states are drawn, loaded from the run's files: variants as columns (wrapped past
+/// `most_columns`), parameters and cases as rows (at most eight), or with `across` parameters as
+/// columns and variants as rows. The frame nearest to a wanted parameter is taken, and the label
+/// gives the parameter it really has; parameters with the same nearest frame make one row.
 /// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
-std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view);
+std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view,
+                                     std::size_t most_columns = kMostColumns);
 
 /// Whether two rows name their cells alike.
 bool same_labels(const FigureRow& a, const FigureRow& b);

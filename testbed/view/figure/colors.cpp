@@ -39,15 +39,20 @@ constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
 /// Of lines of the first class, which would not be seen on the page in the tone of the material.
 constexpr Color kInk{0.2, 0.2, 0.2};
 
-// Pale grounds that keep their shading, after the hues of Okabe and Ito (2008).
-constexpr std::array<Color, 8> kClasses{{{0.900, 0.880, 0.830},
-                                         {0.420, 0.650, 0.850},
-                                         {0.945, 0.640, 0.240},
-                                         {0.360, 0.720, 0.560},
-                                         {0.820, 0.520, 0.690},
-                                         {0.930, 0.860, 0.350},
-                                         {0.850, 0.430, 0.300},
-                                         {0.450, 0.450, 0.500}}};
+// Pale grounds that keep their shading, after the hues of Okabe and Ito (2008); the last four as
+// far from them and from each other as they are.
+constexpr std::array<Color, 12> kClasses{{{0.900, 0.880, 0.830},
+                                          {0.420, 0.650, 0.850},
+                                          {0.945, 0.640, 0.240},
+                                          {0.360, 0.720, 0.560},
+                                          {0.820, 0.520, 0.690},
+                                          {0.930, 0.860, 0.350},
+                                          {0.850, 0.430, 0.300},
+                                          {0.450, 0.450, 0.500},
+                                          {0.270, 0.280, 0.660},
+                                          {0.470, 0.270, 0.170},
+                                          {0.720, 0.360, 0.880},
+                                          {0.620, 0.880, 0.900}}};
 
 // The first as water.cpp shades a surface seen from above; the others far from it.
 constexpr std::array<Color, 7> kOnWater{{{0.215, 0.480, 0.560},

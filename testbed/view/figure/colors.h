@@ -21,7 +21,7 @@ Rgb to_rgb(const std::array<double, 3>& color);
 using Palette = std::vector<std::array<double, 3>>;
 
 /// Colours of classes: told apart by people who see no red or no green, in print, and under
-/// shading.
+/// shading. Twelve (seven on water), then the first again.
 /// @param on_water  the first class is plain water, and the others stand out from it
 /// @param of_lines  they are drawn on the page: the first class is ink
 Palette class_palette(std::size_t count, bool on_water, bool of_lines = false);

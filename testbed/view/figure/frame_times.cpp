@@ -57,6 +57,7 @@ FigureView contact_sheet_view(const RunRecord& record, const FigureView& view) {
   sheet.parameters = evenly_chosen(frame_parameters(record, view), view.contact_sheet);
   sheet.across = FigureView::Across::states;
   sheet.section.reset();
+  sheet.labels.clear();
   sheet.plain = false;
   sheet.above.reset();
   sheet.below.reset();

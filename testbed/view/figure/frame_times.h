@@ -21,7 +21,7 @@ std::vector<double> frame_parameters(const RunRecord& record, const FigureView& 
 std::vector<double> evenly_chosen(const std::vector<double>& parameters, int count);
 
 /// The view of a contact sheet: frames of `view.contact_sheet` evenly spaced parameters side by
-/// side, of one case, without further rows.
+/// side, of one case, without further rows and labels.
 FigureView contact_sheet_view(const RunRecord& record, const FigureView& view);
 
 }  // namespace geoprior

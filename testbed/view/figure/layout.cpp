@@ -11,6 +11,7 @@
 #include "testbed/runner/inputs/run_reference.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/view/figure/named_values.h"
 #include "testbed/view/panel/section.h"
 #include "testbed/view/view_window.h"
 
@@ -218,7 +219,15 @@ Picture draw_cell(const DrawnPanel& panel, const FigureView& view, const BlockLo
     parts.overlays.push_back(
         {&overlay.part, look.colors.at(overlay.name), overlay.name == kFibres});
   }
-  return draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
+  Picture picture =
+      draw_panel(parts, look.window, look.style, layout.panel_width, layout.panel_height);
+  if (look.labels) {
+    draw_value_labels(
+        picture,
+        seen_names(parts, look.window, look.labels->array, layout.panel_width, layout.panel_height),
+        *look.labels);
+  }
+  return picture;
 }
 
 /// White where the sheet has no pattern, or is not there.
@@ -275,9 +284,21 @@ bool has_bar(const BlockLook& look) {
   return look.style.scale && look.style.scale->palette.empty();
 }
 
+/// Makes room for the names at both sides of the window, as wide as the panels may become.
+LabelColumns label_columns(const std::vector<FigureRow>& rows, const FigureView& view,
+                           ViewWindow& window) {
+  std::size_t columns = 1;
+  for (const FigureRow& row : rows) columns = std::max(columns, row.cells.size());
+  const int most_width =
+      std::min(kMostPanelWidth, kPictureWidth / static_cast<int>(columns) - kPanelGap);
+  return make_label_columns(view.labels, label_names(rows, view.labels), most_width,
+                            kMostPanelHeight, window);
+}
+
 BlockLook make_look(const std::vector<FigureRow>& rows, const FigureView& view) {
   BlockLook look;
   look.window = fit_window(all_parts(rows, true), view);
+  if (!view.labels.empty()) look.labels = label_columns(rows, view, look.window);
   look.style = panel_style(rows, view);
   look.colors = overlay_colors(rows, view.overlays);
   look.legend = legend_entries(rows, view);
@@ -285,12 +306,16 @@ BlockLook make_look(const std::vector<FigureRow>& rows, const FigureView& view) 
   return look;
 }
 
-FigureBlock make_block(const OpenedRun& run, const FigureView& view) {
-  FigureBlock block{view, collect_cells(run, view), {}};
+FigureBlock make_block(const OpenedRun& run, const FigureView& view, std::size_t most_columns) {
+  FigureBlock block{view, collect_cells(run, view, most_columns), {}};
   if (block.rows.empty() || all_parts(block.rows, false).empty()) {
     throw Error("the run has no frames to draw", run.folder().string());
   }
-  block.look = make_look(block.rows, view);
+  if (view.color_by && view.classes.empty() && !view.identities) {
+    block.view.classes = unite_names(block.rows, *view.color_by);
+    block.has_own_classes = !block.view.classes.empty();
+  }
+  block.look = make_look(block.rows, block.view);
   return block;
 }
 
@@ -300,6 +325,7 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   further.label = row.label;
   further.color_by = row.color_by;
   further.classes = row.classes;
+  further.labels = row.labels;
   further.identities = false;
   further.direction = row.direction;
   further.up = row.up;
@@ -316,11 +342,20 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   return further;
 }
 
+/// The same in all blocks, whose columns stand over each other.
+std::size_t most_columns(const FigureView& view) {
+  const auto has_labels = [](const std::optional<FurtherRow>& row) {
+    return row && !row->labels.empty();
+  };
+  const bool labelled = !view.labels.empty() || has_labels(view.above) || has_labels(view.below);
+  return labelled ? kMostLabelledColumns : kMostColumns;
+}
+
 std::optional<FigureBlock> make_further_block(const OpenedRun& run, const FigureView& view,
                                               const FurtherRow& row) {
   FigureView further = further_view(view, row);
   if (!row.input) {
-    FigureBlock block = make_block(run, further);
+    FigureBlock block = make_block(run, further, most_columns(view));
     for (FigureRow& cells : block.rows) cells.has_headings &= row.variants.empty();
     return block;
   }
@@ -332,7 +367,7 @@ std::optional<FigureBlock> make_further_block(const OpenedRun& run, const Figure
   const fs::path source = find_run_of_content(reference.experiment_id, input->sha256);
   further.variants = {reference.variant};
   further.cases = {reference.case_name};
-  return make_block(OpenedRun(source, run.unverified()), further);
+  return make_block(OpenedRun(source, run.unverified()), further, most_columns(view));
 }
 
 int block_height(const FigureBlock& block, const Layout& layout) {
@@ -377,7 +412,7 @@ std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& vie
     if (auto block = make_further_block(run, view, *row)) blocks.push_back(*std::move(block));
   };
   add_further(view.above);
-  blocks.push_back(make_block(run, view));
+  blocks.push_back(make_block(run, view, most_columns(view)));
   add_further(view.below);
   if (blocks.size() == 1) return blocks;
   const FigureRow* named = nullptr;  // the last row whose cells have their names over them
@@ -394,6 +429,12 @@ std::vector<FigureBlock> make_blocks(const OpenedRun& run, const FigureView& vie
       row.label = name + (row.label.empty() ? "" : ", ") + row.label;
   }
   return blocks;
+}
+
+void take_look(FigureBlock& block, const FigureBlock& of) {
+  block.look = of.look;
+  if (of.has_own_classes)
+    block.view.classes = unite_names(block.rows, *block.view.color_by, of.view.classes);
 }
 
 FigureSize figure_size(const std::vector<FigureBlock>& blocks) {

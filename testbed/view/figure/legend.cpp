@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "testbed/view/figure/named_values.h"
 #include "testbed/view/panel/plane_curves.h"
 
 namespace geoprior {
@@ -218,7 +219,9 @@ std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows,
     entries = identity_entries(*view.color_by, on_water);
   } else if (colored) {
     const Palette palette = class_palette(view.classes.size(), on_water, of_lines);
+    const std::vector<bool> occurs = codes_that_occur(rows, *view.color_by);
     for (std::size_t i = 0; i < view.classes.size(); ++i) {
+      if (!occurs.empty() && (i >= occurs.size() || !occurs[i])) continue;
       entries.push_back({display_name(view.classes[i]), palette[i], LegendEntry::Mark::area});
     }
   }

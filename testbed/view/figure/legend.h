@@ -34,7 +34,7 @@ OverlayColors overlay_colors(const std::vector<FigureRow>& rows,
                              const std::vector<std::string>& overlays);
 
 /// The classes of the view, the overlays that some panel has, the expected curve. Empty for a view
-/// without classes.
+/// without classes. Of an array that has names of its own, only those that some panel shows.
 std::vector<LegendEntry> legend_entries(const std::vector<FigureRow>& rows, const FigureView& view);
 
 /// The entries in lines that fit a picture of that width (pixels), in order.

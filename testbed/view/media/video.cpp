@@ -36,6 +36,7 @@ fs::path frame_file(const fs::path& folder, std::size_t index) {
 FigureView frame_view(const FigureView& view, const std::vector<double>& parameters,
                       const RunRecord& record) {
   FigureView frame = contact_sheet_view(record, view);
+  frame.labels = view.labels;
   frame.above = view.above;
   frame.below = view.below;
   frame.parameters = parameters;
@@ -114,7 +115,7 @@ void draw_video(const OpenedRun& run, const FigureView& view, const VideoOptions
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     throw_if_stopped();
     auto blocks = make_blocks(run, frame_view(view, {parameters[i]}, record));
-    for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b].look = samples[b].look;
+    for (std::size_t b = 0; b < blocks.size(); ++b) take_look(blocks[b], samples[b]);
     write_png(draw_figure(blocks), frame_file(options.out, i));
     ++video.frames;
   }

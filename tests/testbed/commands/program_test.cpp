@@ -112,6 +112,14 @@ TEST_F(Program, CommandsOfATopicHaveAFlagForEachOption) {
   EXPECT_THAT(run("greet --help").out, AllOf(HasSubstr("--times-said"), HasSubstr("how often")));
 }
 
+TEST_F(Program, TheSecondArgumentOfATopicsCommandIsAnOptionWithoutItsFlag) {
+  EXPECT_EQ(run("greet Ann 'good day'").out, "good day Ann\n");
+  EXPECT_EQ(run("greet Ann --times-said 2 'good day'").out, "good day Ann\ngood day Ann\n");
+  EXPECT_EQ(run("greet Ann --words 'good day'").out, "good day Ann\n");
+  EXPECT_EQ(run("greet Ann 'good day' Bob").code, 2);
+  EXPECT_THAT(run("greet --help").out, HasSubstr("words"));
+}
+
 TEST_F(Program, DescribesTheFilesOfATopic) {
   EXPECT_THAT(run("describe rim").err, AllOf(HasSubstr("points of a rim"), HasSubstr("[rim]"),
                                              HasSubstr("angle"), HasSubstr("deg")));

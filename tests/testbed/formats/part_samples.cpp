@@ -38,7 +38,12 @@ Part sample_triangles() {
   part.triangles << 0, 1, 2, 2, 3, 4, 4, 0, 2;
   part.arrays = {{"normal", "1", NamedArray::On::points, noise(5, 3, "normal")},
                  {"strain", "1/s", NamedArray::On::cells, noise(3, 1, "strain")},
-                 {"no unit", "", NamedArray::On::cells, noise(3, 4, "other")}};
+                 {"no unit", "", NamedArray::On::cells, noise(3, 4, "other")},
+                 {"kind",
+                  "1",
+                  NamedArray::On::cells,
+                  Eigen::Vector3d(1, 0, 1),
+                  {"flat", "cône & <\"zylinder\">", "unseen"}}};
   part.arrays[0].values(1, 2) = std::numeric_limits<double>::quiet_NaN();
   return part;
 }
@@ -88,6 +93,7 @@ void expect_equal(const Part& a, const Part& b) {
     EXPECT_EQ(a.arrays[i].name, b.arrays[i].name);
     EXPECT_EQ(a.arrays[i].unit, b.arrays[i].unit);
     EXPECT_EQ(a.arrays[i].on, b.arrays[i].on);
+    EXPECT_EQ(a.arrays[i].names, b.arrays[i].names);
     EXPECT_TRUE(same_bits(a.arrays[i].values, b.arrays[i].values)) << a.arrays[i].name;
   }
 }

@@ -10,7 +10,8 @@ namespace geoprior::test {
 
 Eigen::MatrixXd noise(Eigen::Index rows, Eigen::Index columns, std::string_view purpose);
 
-/// One part of every kind, with arrays over points and cells, units, and a value that is no number.
+/// One part of every kind, with arrays over points and cells, units, names of values, and a value
+/// that is no number.
 Part sample_triangles();
 Part sample_lines();
 Part sample_points();

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,25 @@ TEST(Colors, AValueThatIsNoClassIsNamed) {
               }),
               HasSubstr("has the value 2"));
   EXPECT_EQ(make_class_scale({}, "kind", {"flat"}).classes.size(), 1u) << "no part need have it";
+}
+
+// Steps of ten and more of CIE 1976 lightness, red-green and yellow-blue are seen side by side.
+TEST(Colors, OfTwelveClassesAreToldApart) {
+  const auto lab = [](const std::array<double, 3>& srgb) {
+    std::array<double, 3> linear{};
+    for (std::size_t c = 0; c < 3; ++c) linear[c] = std::pow((srgb[c] + 0.055) / 1.055, 2.4);
+    const auto [r, g, b] = linear;
+    const double x = std::cbrt((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+    const double y = std::cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b);
+    const double z = std::cbrt((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+    return Eigen::Vector3d(116 * y - 16, 500 * (x - y), 200 * (y - z));
+  };
+  const Palette palette = class_palette(13, false);
+  EXPECT_EQ(palette[12], palette[0]);
+  for (std::size_t i = 0; i < 12; ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT((lab(palette[i]) - lab(palette[j])).norm(), 15) << i << ' ' << j;
+  }
 }
 
 TEST(ScalarBar, TitleStaysInsideANarrowPicture) {

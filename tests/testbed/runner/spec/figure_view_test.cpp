@@ -26,6 +26,15 @@ TEST_F(SpecView, FigureViewHasClassesOfItsColours) {
   EXPECT_THAT(error_of(disc_with("[figure_view]\nmaterial = \"wood\"\n")), HasSubstr("clay"));
 }
 
+TEST_F(SpecView, FigureViewNamesTheArrayThatLabelsAreOf) {
+  EXPECT_EQ(load(disc_with("")).view.labels, "");
+  const Experiment e = load(
+      disc_with("[figure_view]\nlabels = \"organ\"\n[figure_view.below]\nlabels = \"vessel\"\n"));
+  EXPECT_EQ(e.view.labels, "organ");
+  EXPECT_EQ(e.view.below->labels, "vessel");
+  EXPECT_THAT(error_of(disc_with("[figure_view]\nlabels = [\"organ\"]\n")), HasSubstr("labels"));
+}
+
 TEST_F(SpecView, FigureViewDrawsOverThePatternWhatItDrawsOverTheSheet) {
   const auto view = [&](const std::string& pattern) {
     return disc_with("[figure_view]\noverlays = [\"rulings\", \"tears\"]\n" + pattern);

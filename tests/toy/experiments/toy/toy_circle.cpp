@@ -218,6 +218,7 @@ Topic circle_topic() {
   topic.diagnostics = {{"evaluations", "1", "points of the rim", true, {0.5, 0}}};
   topic.commands = {topic_command<GreetingOptions>("greet", "say something to somebody", "name",
                                                    "who is meant", greet)};
+  topic.commands.front().second_argument = "words";
   topic.files = {
       {"rim", "points of a rim", "[rim]", {{"angle", "number", "", "", "deg", "where"}}}};
   return topic;

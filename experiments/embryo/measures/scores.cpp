@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/embryo/measures/organs.h"
+
+namespace geoprior::embryo {
+namespace {
+
+/// A measurement's value in a sequence. A rise or a shift is that of a pole since the first frame
+/// that has it.
+std::optional<double> value_of(const EmbryoScene& scene, const FrameSequence& frames,
+                               const Measurement& measurement, std::size_t frame) {
+  const std::string& quantity = measurement.quantity;
+  const bool rises = quantity == "upper_pole_rise", shifts = quantity == "lower_pole_shift";
+  if (!rises && !shifts)
+    return reading(scene, *frames.frame(frame), quantity, measurement.structure);
+  const std::string height = rises ? "upper_pole_height" : "lower_pole_height";
+  const auto last = reading(scene, *frames.frame(frame), height, measurement.structure);
+  if (!last) return std::nullopt;
+  for (std::size_t i = 0; i <= frame; ++i)
+    if (const auto first = reading(scene, *frames.frame(i), height, measurement.structure))
+      return *last - *first;
+  return std::nullopt;
+}
+
+std::optional<std::size_t> frame_at(const FrameSequence& frames, double day) {
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (std::abs(frames.parameter(i) - day) < 1e-9) return i;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ScoreMeasures> score_measures(const EmbryoScene& scene, const FrameSequence& frames) {
+  if (scene.ontology.measurements.empty() || frames.size() == 0) return std::nullopt;
+  if (frames.frame(0)->find_table(recorded::kBody) == nullptr) return std::nullopt;  // no bodies
+  ScoreMeasures m;
+  double squares = 0, worst = 0;
+  for (const Measurement& one : scene.ontology.measurements) {
+    const auto frame = frame_at(frames, scene.ontology.stages[one.stage].middle());
+    if (!frame) continue;
+    if (std::find(one.input_of.begin(), one.input_of.end(), scene.options.parameter_set) !=
+        one.input_of.end()) {
+      ++m.inputs;
+      continue;
+    }
+    const auto value = value_of(scene, frames, one, *frame);
+    if (!value) continue;
+    ++m.scored;
+    if (*value >= one.low && *value <= one.high) ++m.inside;
+    const double off = one.deviation > 0 ? std::abs(*value - one.mean) / one.deviation : 0;
+    squares += off * off;
+    worst = std::max(worst, off);
+  }
+  if (m.scored + m.inputs == 0) return std::nullopt;
+  if (m.scored > 0) {
+    m.rms = std::sqrt(squares / m.scored);
+    m.worst = worst;
+  }
+  return m;
+}
+
+}  // namespace geoprior::embryo
