@@ -11,7 +11,7 @@
   TOPIC(sketch)                \
   TOPIC(torus)                 \
   TOPIC(assembly)              \
-  TOPIC(grammar)              \
+  TOPIC(grammar)               \
   TOPIC(embryo)
 
 /// What experiments/<name> defines.
