@@ -90,7 +90,7 @@ FrameTable process_table(const DayState& state) {
 }  // namespace
 
 NamedArray structure_array(const EmbryoScene& scene, NamedArray::On on, Eigen::VectorXd codes) {
-  return {recorded::kStructure, "1", on, std::move(codes), scene.structure_names};
+  return {recorded::kStructure, "1", on, std::move(codes), scene.structure_labels};
 }
 
 Part surface_part(const EmbryoScene& scene, const std::vector<StructureMesh>& meshes) {

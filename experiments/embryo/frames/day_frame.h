@@ -9,7 +9,7 @@
 
 namespace geoprior::embryo {
 
-/// A structure code as an array whose codes have names: the local names of the scene's structures.
+/// A structure code as an array whose codes have names: the labels of the scene's structures.
 NamedArray structure_array(const EmbryoScene& scene, NamedArray::On on, Eigen::VectorXd codes);
 
 /// One surface of meshes, with what each triangle belongs to and what kind of thing that is.

@@ -61,6 +61,8 @@ bool has_surface(const Ontology& ontology, const Structure& structure) {
 void name_structures(EmbryoScene& scene) {
   scene.structure_names = names_of(scene.ontology.structures);
   for (const Structure& one : scene.ontology.structures)
+    scene.structure_labels.push_back(one.label);
+  for (const Structure& one : scene.ontology.structures)
     if (has_surface(scene.ontology, one)) scene.kind_names.push_back(one.kind);
   std::sort(scene.kind_names.begin(), scene.kind_names.end());
   scene.kind_names.erase(std::unique(scene.kind_names.begin(), scene.kind_names.end()),
@@ -115,7 +117,8 @@ void choose_days(EmbryoScene& scene) {
                                                : from + (to - from) * i / (options.frames - 1));
   }
   if (options.border_step)
-    add_borders(scene.days, scene.ontology, first, last, *options.border_step);
+    add_borders(scene.days, scene.ontology, scene.days.front(), scene.days.back(),
+                *options.border_step);
   std::sort(scene.days.begin(), scene.days.end());
   scene.days.erase(std::unique(scene.days.begin(), scene.days.end()), scene.days.end());
 }

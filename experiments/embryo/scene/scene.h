@@ -36,8 +36,9 @@ class EmbryoScene final : public Scene {
   std::optional<ExpectedChanges> expected;
   std::vector<bool> meshed;  ///< structures that get a surface
   std::vector<double> days;
-  std::vector<std::string> structure_names;  ///< local names, by code
-  std::vector<std::string> kind_names;       ///< what structures are coloured by
+  std::vector<std::string> structure_names;   ///< local names, by code
+  std::vector<std::string> structure_labels;  ///< what pictures call them
+  std::vector<std::string> kind_names;        ///< what structures are coloured by
   std::vector<int> kind_of_structure;
 
   [[nodiscard]] std::vector<double> parameters() const override { return days; }
