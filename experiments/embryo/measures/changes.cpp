@@ -74,7 +74,8 @@ Compared compared(const FrameSequence& frames, const FrameSequence& reference) {
 double errors(const EmbryoScene& scene, const std::set<int>& found,
               const std::vector<std::string>& expected) {
   std::set<std::string> names, wanted;
-  for (const int s : found) names.insert(scene.structure_names[s]);
+  for (const int s : found)
+    if (scene.meshed[s]) names.insert(scene.structure_names[s]);
   for (const std::string& name : expected) {
     const auto code = scene.ontology.find_structure(name);
     if (!code || scene.meshed[*code]) wanted.insert(name);
