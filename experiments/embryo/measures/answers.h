@@ -5,13 +5,12 @@
 
 namespace geoprior::embryo {
 
-/// Rows of the viewer's queries against those of the reference variant.
-struct AnswerMeasures {
-  double rows = 0;       ///< of all queries
-  double differing = 0;  ///< queries whose rows, as sets, are others than the reference's
-};
-/// Absent where a frame has no answers.
-std::optional<AnswerMeasures> answer_measures(const EmbryoScene& scene, const Frame& frame,
-                                              const Frame& reference);
+/// Rows of all queries of the viewer; absent where a frame has no answers.
+std::optional<double> answer_rows(const EmbryoScene& scene, const Frame& frame);
+
+/// Queries whose rows, as sets, are others than those of the reference variant; absent where one of
+/// both has no answers.
+std::optional<double> answers_differing(const EmbryoScene& scene, const Frame& frame,
+                                        const Frame& reference);
 
 }  // namespace geoprior::embryo

@@ -162,16 +162,16 @@ TEST(EmbryoMotion, WhatShrinksIsAReversalUnlessItIsSaidToRegress) {
 TEST(EmbryoAnswers, OtherRowsAreSeen) {
   const EmbryoScene scene = scene_of({"a"});
   Frame one = empty_frame(40);
-  EXPECT_FALSE(answer_measures(scene, one, one));
+  EXPECT_FALSE(answers_differing(scene, one, one));
   FrameTable& answers = one.tables[recorded::kAnswers];
   answers.columns = {"query [1]", "rows [1]", "hash_high [1]", "hash_low [1]"};
   answers.rows.resize(2, 4);
   answers.rows << 1, 5, 17, 18, 2, 3, 19, 20;
   Frame other = one;
-  EXPECT_EQ(answer_measures(scene, one, other)->differing, 0);
-  EXPECT_EQ(answer_measures(scene, one, other)->rows, 8);
+  EXPECT_EQ(answers_differing(scene, one, other).value(), 0);
+  EXPECT_EQ(answer_rows(scene, one).value(), 8);
   other.tables.at(recorded::kAnswers).rows(1, 3) = 21;
-  EXPECT_EQ(answer_measures(scene, one, other)->differing, 1);
+  EXPECT_EQ(answers_differing(scene, one, other).value(), 1);
 }
 
 }  // namespace
