@@ -48,7 +48,8 @@ MetricGroup surface_group() {
       .row("not_spheres", "1", "connected surfaces whose Euler number V - E + F is not 2", kLow,
            kCount, [](const M& m) { return m.not_spheres; })
       .oracle()
-      .row("pieces", "1", "connected surfaces", kNone, kCount, [](const M& m) { return m.pieces; })
+      .row("pieces", "1", "connected surfaces of all structures", kNone, kCount,
+           [](const M& m) { return m.pieces; })
       .row("kidney_pieces", "1", "connected surfaces with triangles of a kidney", kNone, kCount,
            [](const M& m) { return m.kidney_pieces; })
       .oracle()
@@ -75,7 +76,7 @@ MetricGroup surface_group() {
 MetricGroup organ_group() {
   using M = OrganMeasures;
   return frame_metrics<EmbryoScene>(organ_measures)
-      .row("crown_rump_length", "m", "length of the body", kNone, kSmooth,
+      .row("crown_rump_length", "m", "length of the body from crown to rump", kNone, kSmooth,
            [](const M& m) { return m.crown_rump; })
       .row("kidney_length", "m", "extent of the left kidney's surface along its long axis", kNone,
            kSmooth, [](const M& m) { return m.kidney_length; })
