@@ -24,7 +24,7 @@ class QueryMethod final : public PoseMethod {
     day_ = parameter;
     Graph graph;
     {
-      const Phase phase(context, "load");
+      const Phase phase(context, "read");
       graph = load();
     }
     Graph saturated;
