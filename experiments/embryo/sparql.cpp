@@ -16,8 +16,7 @@ class SparqlMethod final : public PoseMethod {
   void solve(double parameter, RunContext& context) override {
     const Phase phase(context, "sparql");
     day_ = parameter;
-    ViewerQuestion question;
-    question.day = day_;
+    const ViewerQuestion question = question_of(scene_, day_);
     std::vector<SparqlQuery> queries;
     for (std::size_t q = 0; q < scene_.files.queries.size(); ++q)
       queries.push_back(

@@ -24,6 +24,19 @@ std::uint64_t hash_of(const AnswerRows& rows) {
 
 }  // namespace
 
+ViewerQuestion question_of(const EmbryoScene& scene, double day) {
+  ViewerQuestion question;
+  question.day = day;
+  const Ontology& ontology = scene.ontology;
+  const bool has_system = ontology.find_structure(question.system).has_value();
+  const bool has_structure = ontology.find_structure(question.structure).has_value();
+  for (auto one = ontology.structures.rbegin(); one != ontology.structures.rend(); ++one) {
+    if (!has_system && one->crown_rump) question.system = one->name;
+    if (!has_structure && !one->develops_from.empty()) question.structure = one->name;
+  }
+  return question;
+}
+
 Frame answer_frame(double day, std::vector<AnswerRows> answers) {
   Frame frame;
   frame.parameter = day;

@@ -49,7 +49,7 @@ class QueryMethod final : public PoseMethod {
   }
 
   void ask_often(const ViewerQueries& queries, RunContext& context) {
-    const auto system = queries.graph().dictionary().find_local(ViewerQuestion{}.system);
+    const auto system = queries.graph().dictionary().find_local(question_of(scene_, day_).system);
     found_ = 0;
     {
       const Phase phase(context, "path");
@@ -65,8 +65,7 @@ class QueryMethod final : public PoseMethod {
 
   [[nodiscard]] std::vector<Rows> all_answers(const Graph& graph,
                                               const ViewerQueries& queries) const {
-    ViewerQuestion question;
-    question.day = day_;
+    const ViewerQuestion question = question_of(scene_, day_);
     std::vector<Rows> answers;
     for (int q = 1; q <= kViewerQueries; ++q) answers.push_back(query_rows(queries, q, question));
     if (!options_.levels) return answers;
