@@ -18,7 +18,9 @@ constexpr int kRepeats = 1000;
 class QueryMethod final : public PoseMethod {
  public:
   QueryMethod(const EmbryoScene& scene, const ViewerQueryOptions& options)
-      : scene_(scene), options_(options) {}
+      : scene_(scene),
+        options_(options),
+        copied_(scene.options.copies == 1 ? "" : to_ntriples(scene.graph)) {}
 
   void solve(double parameter, RunContext& context) override {
     day_ = parameter;
@@ -44,7 +46,6 @@ class QueryMethod final : public PoseMethod {
  private:
   [[nodiscard]] Graph load() const {
     if (scene_.options.copies == 1) return read_graph_of(scene_.files);
-    if (copied_.empty()) copied_ = to_ntriples(scene_.graph);
     return read_graph(copied_, RdfFormat::ntriples, "copies");
   }
 
@@ -87,7 +88,7 @@ class QueryMethod final : public PoseMethod {
 
   const EmbryoScene& scene_;
   ViewerQueryOptions options_;
-  mutable std::string copied_;
+  std::string copied_;  ///< N-Triples of all copies; empty for one
   double day_ = 0;
   std::size_t found_ = 0;
   std::vector<Rows> answers_;

@@ -4,7 +4,7 @@ namespace geoprior::embryo {
 
 void describe(OptionVisitor& v, EmbryoSceneOptions& options) {
   v.value("ontology", options.ontology,
-          {.doc = "ontology of the system (.ttl, .nt, .rdf, .owl)", .named = Named::file});
+          {.doc = "ontology of the system (.ttl, .nt, .rdf, .owl, .xml)", .named = Named::file});
   v.value("additions", options.additions,
           {.doc = "further files whose triples are added to the ontology's", .named = Named::file});
   v.value("rules", options.rules,

@@ -1,6 +1,5 @@
 #include "experiments/embryo/scene/source_files.h"
 
-#include <array>
 #include <set>
 
 #include "core/error.h"
@@ -12,14 +11,6 @@ namespace geoprior::embryo {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
-
-RdfFormat format_of(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  if (extension == ".ttl") return RdfFormat::turtle;
-  if (extension == ".nt") return RdfFormat::ntriples;
-  if (extension == ".rdf" || extension == ".owl") return RdfFormat::rdfxml;
-  throw Error("has the extension '" + extension + "'", file.string(), ".ttl, .nt, .rdf, .owl");
-}
 
 std::filesystem::path find_below(const std::string& name, const std::filesystem::path& folder,
                                  const std::string& key) {
@@ -72,7 +63,7 @@ SourceFiles read_source_files(const EmbryoSceneOptions& options,
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string key = i == 0 ? "scene.ontology" : "scene.additions." + std::to_string(i - 1);
     const auto file = find_below(names[i], folder, key);
-    files.triples.push_back({file.string(), read_text_file(file), format_of(file)});
+    files.triples.push_back({file.string(), read_text_file(file), format_of(file.string())});
     files.paths.push_back(file);
   }
   const auto rules = find_below(options.rules, folder, "scene.rules");
@@ -92,7 +83,6 @@ Graph read_graph_of(const SourceFiles& files) {
   Graph graph;
   for (const SourceFiles::Triples& one : files.triples)
     read_into(graph, one.bytes, one.format, one.where);
-  graph.sort();
   return graph;
 }
 
