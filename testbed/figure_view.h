@@ -56,7 +56,7 @@ struct Camera {
 struct FigureView {
   enum class Shading { smooth, flat };
   enum class Material { clay, paper, water };
-  enum class Across { variants, states };
+  enum class Across { variants, states, cases };
 
   std::optional<double> at_parameter;  ///< frame drawn; absent: the last
   std::vector<double> parameters;      ///< further columns/rows, when more than one frame is drawn

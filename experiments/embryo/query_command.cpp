@@ -27,7 +27,7 @@ EmbryoSceneOptions scene_options_of(const std::filesystem::path& file) {
     throw Error("is of the topic '" + topic->text + "'", file.string(), "embryo");
   EmbryoSceneOptions options;
   read_options(*table, "scene", options);
-  options.expected = std::nullopt;  // what a run is compared with, and no part of the graph
+  options.expected = options.queries = std::nullopt;  // what a run is compared with, and asked
   return options;
 }
 

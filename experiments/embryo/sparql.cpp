@@ -1,5 +1,6 @@
 #include "experiments/embryo/sparql.h"
 
+#include "core/error.h"
 #include "experiments/embryo/poses/answers.h"
 #include "experiments/embryo/sparql/answers.h"
 #include "experiments/embryo/sparql/run_sparql.h"
@@ -40,6 +41,8 @@ void describe(OptionVisitor& /*v*/, SparqlMethodOptions& /*options*/) {}
 
 std::unique_ptr<PoseMethod> make_sparql_method(const EmbryoScene& scene, const SparqlMethodOptions&,
                                                RunContext&) {
+  if (scene.files.queries.empty())
+    throw Error("there is nothing to ask", "scene.queries", "a folder of q1.rq to q8.rq");
   return std::make_unique<SparqlMethod>(scene);
 }
 

@@ -2,7 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/connectivity.h"
 #include "core/error.h"
@@ -71,23 +75,100 @@ void require_finite_places(const TriMesh& mesh) {
       throw Error("a coordinate is not finite", "vertex " + std::to_string(v));
 }
 
-/// Depth in `outer` of the deepest of the points that a surface is looked at.
-double depth_of(const TriMesh& mesh, const ClosedSurface& outer, const Eigen::AlignedBox3d& box) {
-  double deepest = 0;
-  const auto look_at = [&](const Eigen::RowVector3d& x) {
-    if (box.contains(x.transpose())) deepest = std::max(deepest, outer.depth(x.transpose()));
-  };
-  for (const auto& x : mesh.V.rowwise()) look_at(x);
-  for (const auto& triangle : mesh.F.rowwise()) {
-    const Eigen::RowVector3d a = mesh.V.row(triangle[0]), b = mesh.V.row(triangle[1]),
-                             c = mesh.V.row(triangle[2]);
-    look_at((a + b + c) / 3);
-    if (triangle[0] < triangle[1]) look_at((a + b) / 2);
-    if (triangle[1] < triangle[2]) look_at((b + c) / 2);
-    if (triangle[2] < triangle[0]) look_at((c + a) / 2);
+/// Vertices at the other ends of a vertex's edges, each as often as triangles have it.
+class VertexNeighbours {
+ public:
+  explicit VertexNeighbours(const TriMesh& mesh) : begin_(mesh.V.rows() + 1, 0) {
+    for (const auto& triangle : mesh.F.rowwise())
+      for (const int v : triangle) begin_[v + 1] += 2;
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    list_.resize(begin_.back());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for (const auto& triangle : mesh.F.rowwise()) {
+      for (int k = 0; k < 3; ++k)
+        for (const int step : {1, 2}) list_[next[triangle[k]]++] = triangle[(k + step) % 3];
+    }
   }
-  return deepest;
-}
+  [[nodiscard]] std::span<const int> of(int v) const {
+    return std::span(list_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+  }
+
+ private:
+  std::vector<int> begin_, list_;
+};
+
+/// Finds the deepest of the points at which a surface is looked at.
+///
+/// A depth changes by no more than the way that one goes: from a point far outside, its whole
+/// neighbourhood is known to be no deeper than what was found before, and is not looked at.
+class DeepestPoint {
+ public:
+  DeepestPoint(const TriMesh& mesh, const ClosedSurface& outer, const Eigen::AlignedBox3d& box)
+      : mesh_(mesh),
+        outer_(outer),
+        box_(box),
+        round_off_(1e-12 * box.diagonal().norm()),
+        bound_(mesh.V.rows(), std::numeric_limits<double>::infinity()) {}
+
+  double depth() {
+    look_at_vertices();
+    for (const auto& triangle : mesh_.F.rowwise()) {
+      look_between(triangle, (row(triangle[0]) + row(triangle[1]) + row(triangle[2])) / 3);
+      for (int k = 0; k < 3; ++k) {
+        const int a = triangle[k], b = triangle[(k + 1) % 3];
+        if (a < b) look_between(triangle, (row(a) + row(b)) / 2);
+      }
+    }
+    return deepest_;
+  }
+
+ private:
+  [[nodiscard]] Eigen::RowVector3d row(int v) const { return mesh_.V.row(v); }
+
+  /// From neighbour to neighbour, so that a vertex is bounded by those before it.
+  void look_at_vertices() {
+    const VertexNeighbours neighbours(mesh_);
+    std::vector<bool> is_known(mesh_.V.rows(), false);
+    std::vector<int> queue;
+    queue.reserve(mesh_.V.rows());
+    for (int seed = 0; seed < mesh_.V.rows(); ++seed) {
+      if (is_known[seed]) continue;
+      is_known[seed] = true;
+      queue.assign(1, seed);
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        const int v = queue[i];
+        bound_[v] = bound_at(row(v), bound_[v]);
+        for (const int u : neighbours.of(v)) {
+          bound_[u] = std::min(bound_[u], bound_[v] + (row(u) - row(v)).norm());
+          if (!is_known[u]) queue.push_back(u);
+          is_known[u] = true;
+        }
+      }
+    }
+  }
+
+  void look_between(const Eigen::RowVector3i& corners, const Eigen::RowVector3d& x) {
+    double bound = std::numeric_limits<double>::infinity();
+    for (const int v : corners) bound = std::min(bound, bound_[v] + (x - row(v)).norm());
+    bound_at(x, bound);
+  }
+
+  /// The depth of a point that may be the deepest; of another one a bound of it.
+  double bound_at(const Eigen::RowVector3d& x, double bound) {
+    if (bound < deepest_ - round_off_) return bound;
+    if (!box_.contains(x.transpose())) return -box_.exteriorDistance(x.transpose());
+    const double depth = outer_.depth(x.transpose());
+    deepest_ = std::max(deepest_, depth);
+    return depth;
+  }
+
+  const TriMesh& mesh_;
+  const ClosedSurface& outer_;
+  const Eigen::AlignedBox3d& box_;
+  double round_off_;
+  std::vector<double> bound_;  ///< of each vertex: it is no deeper
+  double deepest_ = 0;
+};
 
 }  // namespace
 
@@ -97,7 +178,8 @@ double penetration(const TriMesh& a, const TriMesh& b) {
   if (a.F.rows() == 0 || b.F.rows() == 0) return 0;
   const Eigen::AlignedBox3d common = closed_box(a).intersection(closed_box(b));
   if (common.isEmpty()) return 0;
-  return std::max(depth_of(a, ClosedSurface(b), common), depth_of(b, ClosedSurface(a), common));
+  return std::max(DeepestPoint(a, ClosedSurface(b), common).depth(),
+                  DeepestPoint(b, ClosedSurface(a), common).depth());
 }
 
 }  // namespace geoprior

@@ -12,7 +12,7 @@ namespace geoprior {
 /// not seen. Two surfaces of which one is wholly inside the other have the depth of its innermost
 /// point, which is less than the way out for the whole of it.
 ///
-/// Cost: a query of a tree for each point within the common box.
+/// Cost: a query of a tree for each point within the common box that may be the deepest.
 /// @param a,b      closed and outward oriented; one without triangles is apart from all
 /// @throws Error   on a coordinate that is not finite, or when no triangle has an area
 /// Source of the sign: Baerentzen and Aanaes 2005, "Signed distance computation using the angle

@@ -17,9 +17,10 @@ namespace {
 void fuzz_graph(std::string_view text, embryo::RdfFormat format) {
   allow_error([&] {
     const embryo::Graph graph = embryo::read_graph(text, format, "fuzz");
-    embryo::violations(graph);
-    allow_error(
-        [&] { embryo::make_ontology(graph, {.parameter_set = "Slow", .stage_shift = 1}, "fuzz"); });
+    allow_error([&] {
+      embryo::require_model(embryo::violations(graph), embryo::Mistakes::counted, "fuzz");
+      embryo::make_ontology(graph, {.parameter_set = "Slow", .stage_shift = 1}, "fuzz");
+    });
     const std::string written = embryo::to_ntriples(graph);
     int again = -1;
     allow_error(

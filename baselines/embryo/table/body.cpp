@@ -89,7 +89,6 @@ void add_vessels(BodyPlan& plan) {
            });
   set_life(plan, kLeftCommonIliacArtery, CS13, Week12);
   add_mirrored(plan, kRightCommonIliacArtery, kLeftCommonIliacArtery);
-  set_life(plan, kRightCommonIliacArtery, CS13, Week12);
 }
 
 }  // namespace

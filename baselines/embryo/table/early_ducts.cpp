@@ -68,13 +68,9 @@ void add_early_ducts(BodyPlan& plan) {
   add_left_bud(plan);
   add_left_mesenchyme(plan);
   add_mirrored(plan, kRightMesonephros, kLeftMesonephros);
-  set_life(plan, kRightMesonephros, CS13, CS22);
   add_mirrored(plan, kRightNephricDuct, kLeftNephricDuct);
-  set_life(plan, kRightNephricDuct, CS13, CS17);
   add_mirrored(plan, kRightUretericBud, kLeftUretericBud);
-  set_life(plan, kRightUretericBud, CS13, CS16);
   add_mirrored(plan, kRightMetanephricMesenchyme, kLeftMetanephricMesenchyme);
-  set_life(plan, kRightMetanephricMesenchyme, CS13, CS14);
 }
 
 }  // namespace geoprior::embryo::table

@@ -79,13 +79,9 @@ void add_kidneys(BodyPlan& plan) {
   add_left_artery(plan);
   add_isthmus(plan);
   add_mirrored(plan, kRightMetanephros, kLeftMetanephros);
-  set_life(plan, kRightMetanephros, CS14, Week12);
   add_mirrored(plan, kRightRenalPelvis, kLeftRenalPelvis);
-  set_life(plan, kRightRenalPelvis, CS16, Week12);
   add_mirrored(plan, kRightUreter, kLeftUreter);
-  set_life(plan, kRightUreter, CS17, Week12);
   add_mirrored(plan, kRightRenalArtery, kLeftRenalArtery);
-  set_life(plan, kRightRenalArtery, CS19, Week12);
 }
 
 }  // namespace geoprior::embryo::table

@@ -141,6 +141,7 @@ void add_mirrored(BodyPlan& plan, int right, int left) {
     for (Eigen::Vector3d& place : g.via) place = mirrored(place);
     plan.structures[right].keys.push_back(key);
   }
+  plan.structures[right].exists = plan.structures[left].exists;
 }
 
 }  // namespace geoprior::embryo::table

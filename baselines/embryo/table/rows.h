@@ -193,7 +193,7 @@ void add_ovoid(BodyPlan& plan, int structure, const OvoidForm& form,
                std::initializer_list<OvoidRow> rows);
 void add_duct(BodyPlan& plan, int structure, const DuctForm& form,
               std::initializer_list<DuctRow> rows);
-/// The key frames of the right structure from those of the left one.
+/// The key frames of the right structure from those of the left one, and as long a life.
 void add_mirrored(BodyPlan& plan, int right, int left);
 
 /// From one stage to another, both included.

@@ -55,4 +55,16 @@ std::map<int, TriMesh> recorded_surfaces(const Frame& frame);
 /// (m) @throws Error  where a frame has no table of the body
 double crown_rump_length(const Frame& frame);
 
+/// What a frame of a day has, cut up once for all that is read off it.
+struct RecordedDay {
+  explicit RecordedDay(const Frame& frame)
+      : body(crown_rump_length(frame)),
+        shapes(recorded_shapes(frame)),
+        surfaces(recorded_surfaces(frame)) {}
+
+  double body;  ///< crown-rump length (m)
+  std::vector<RecordedShape> shapes;
+  std::map<int, TriMesh> surfaces;
+};
+
 }  // namespace geoprior::embryo

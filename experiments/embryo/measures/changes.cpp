@@ -99,6 +99,12 @@ double shape_difference(const Shape& a, const Shape& b) {
                    (a.axes - b.axes).cwiseAbs().maxCoeff() * a.radii.maxCoeff()});
 }
 
+/// Largest distance of a vertex of one from the other, both ways.
+double surface_distance(const TriMesh& a, const TriMesh& b) {
+  if (a.V.rows() == b.V.rows() && a.F.rows() == b.F.rows() && a.V == b.V && a.F == b.F) return 0;
+  return std::max(largest_distance(a.V, b), largest_distance(b.V, a));
+}
+
 }  // namespace
 
 std::optional<ChangeMeasures> change_measures(const EmbryoScene& scene,
@@ -146,9 +152,7 @@ std::optional<DifferenceMeasures> difference_measures(const EmbryoScene& scene, 
       ++m.unmatched;
       continue;
     }
-    const double distance =
-        std::max(largest_distance(found->second.V, mesh), largest_distance(mesh.V, found->second));
-    m.surface = std::max(m.surface.value_or(0), distance / body);
+    m.surface = std::max(m.surface.value_or(0), surface_distance(found->second, mesh) / body);
   }
   for (const auto& [structure, mesh] : mine) m.unmatched += theirs.contains(structure) ? 0 : 1;
   return m;

@@ -10,12 +10,10 @@
 namespace geoprior::embryo {
 namespace {
 
-std::optional<TriMesh> surface_of(const Frame& frame, std::optional<int> structure) {
-  if (!structure) return std::nullopt;
-  const auto surfaces = recorded_surfaces(frame);
-  const auto found = surfaces.find(*structure);
-  if (found == surfaces.end()) return std::nullopt;
-  return found->second;
+/// Null where the structure has none.
+const TriMesh* surface_of(const RecordedDay& day, int structure) {
+  const auto found = day.surfaces.find(structure);
+  return found == day.surfaces.end() ? nullptr : &found->second;
 }
 
 double extent_along(const TriMesh& mesh, const Eigen::Vector3d& axis) {
@@ -43,29 +41,27 @@ Eigen::Vector3d pole(const TriMesh& mesh, bool upper) {
   return mesh.V.row(at).transpose();
 }
 
-std::optional<double> interpole(const EmbryoScene& scene, const Frame& frame, int left,
+std::optional<double> interpole(const Ontology& ontology, const RecordedDay& day, int left,
                                 bool upper) {
-  const Ontology& ontology = scene.ontology;
   for (std::size_t i = 0; i < ontology.structures.size(); ++i) {
     const Structure& other = ontology.structures[i];
     const bool are_pair =
         other.mirror_of == left || ontology.structures[left].mirror_of == static_cast<int>(i);
     if (!are_pair) continue;
-    const auto a = surface_of(frame, left), b = surface_of(frame, static_cast<int>(i));
-    if (!a || !b) return std::nullopt;
+    const TriMesh *a = surface_of(day, left), *b = surface_of(day, static_cast<int>(i));
+    if (a == nullptr || b == nullptr) return std::nullopt;
     return std::abs(pole(*a, upper).x() - pole(*b, upper).x());
   }
   return std::nullopt;
 }
 
 /// Between the landmarks T12, L1 … L5, S1, linear; beyond the last two as between them. T12 is 12.
-std::optional<double> vertebral_level(const EmbryoScene& scene, const Frame& frame, double z) {
+std::optional<double> vertebral_level(const Ontology& ontology, const RecordedDay& day, double z) {
   constexpr std::array<const char*, 7> kNames{"T12", "L1", "L2", "L3", "L4", "L5", "S1"};
-  const std::vector<RecordedShape> shapes = recorded_shapes(frame);
   std::vector<double> heights;
   for (const char* name : kNames) {
-    const auto code = scene.ontology.find_structure(name);
-    const RecordedShape* shape = code ? find_shape(shapes, *code) : nullptr;
+    const auto code = ontology.find_structure(name);
+    const RecordedShape* shape = code ? find_shape(day.shapes, *code) : nullptr;
     if (shape == nullptr) return std::nullopt;
     heights.push_back(shape->shape.center.z());
   }
@@ -76,27 +72,27 @@ std::optional<double> vertebral_level(const EmbryoScene& scene, const Frame& fra
 
 }  // namespace
 
-std::optional<double> reading(const EmbryoScene& scene, const Frame& frame,
+std::optional<double> reading(const EmbryoScene& scene, const RecordedDay& day,
                               const std::string& quantity, std::optional<int> structure) {
-  if (quantity == "crown_rump_length") return crown_rump_length(frame);
+  const Ontology& ontology = scene.ontology;
+  if (quantity == "crown_rump_length") return day.body;
   if (!structure && quantity.starts_with("interpole")) structure = left_kidney(scene);
   if (!structure) return std::nullopt;
-  const std::vector<RecordedShape> shapes = recorded_shapes(frame);
-  const RecordedShape* recorded = find_shape(shapes, *structure);
+  const RecordedShape* recorded = find_shape(day.shapes, *structure);
   if (quantity == "branchings")
     return recorded == nullptr ? std::nullopt : std::optional(recorded->shape.branchings);
   if (quantity == "hilum_angle") {
     if (recorded == nullptr) return std::nullopt;
-    return hilum_angle(scene.ontology.structures[*structure], recorded->shape);
+    return hilum_angle(ontology.structures[*structure], recorded->shape);
   }
   if (quantity == "vertebral_level") {
     if (recorded == nullptr) return std::nullopt;
-    return vertebral_level(scene, frame, recorded->shape.center.z());
+    return vertebral_level(ontology, day, recorded->shape.center.z());
   }
   if (quantity == "interpole_upper" || quantity == "interpole_lower")
-    return interpole(scene, frame, *structure, quantity == "interpole_upper");
-  const auto surface = surface_of(frame, structure);
-  if (!surface) return std::nullopt;
+    return interpole(ontology, day, *structure, quantity == "interpole_upper");
+  const TriMesh* surface = surface_of(day, *structure);
+  if (surface == nullptr) return std::nullopt;
   if (quantity == "upper_pole_height") return pole(*surface, true).z();
   if (quantity == "lower_pole_height") return pole(*surface, false).z();
   if (quantity == "kidney_length" && recorded != nullptr)
@@ -113,19 +109,17 @@ std::optional<int> left_kidney(const EmbryoScene& scene) {
   return std::nullopt;
 }
 
-std::optional<double> mirror_error(const EmbryoScene& scene, const Frame& frame) {
+std::optional<double> mirror_error(const EmbryoScene& scene, const RecordedDay& day) {
   if (scene.disease) return std::nullopt;
-  const auto surfaces = recorded_surfaces(frame);
-  const double body = crown_rump_length(frame);
   std::optional<double> worst;
-  for (const auto& [code, mesh] : surfaces) {
+  for (const auto& [code, mesh] : day.surfaces) {
     const auto partner = scene.ontology.structures[code].mirror_of;
     if (!partner) continue;
-    const auto other = surfaces.find(*partner);
-    if (other == surfaces.end()) return 1;  // one of a pair alone
+    const TriMesh* other = surface_of(day, *partner);
+    if (other == nullptr) return 1;  // one of a pair alone
     Eigen::MatrixX3d mirrored = mesh.V;
     mirrored.col(0) *= -1;
-    worst = std::max(worst.value_or(0), largest_distance(mirrored, other->second) / body);
+    worst = std::max(worst.value_or(0), largest_distance(mirrored, *other) / day.body);
   }
   return worst;
 }

@@ -21,7 +21,7 @@ namespace geoprior::embryo {
 /// - upper_pole_height, lower_pole_height: largest and least z of the surface over the origin (m)
 /// - interpole_upper, interpole_lower: distance across (x) of the upper, lower poles of both sides
 /// - vertebral_level: of the centre, a number that grows caudally: T12 is 12, L1 is 13, … S1 is 18
-std::optional<double> reading(const EmbryoScene& scene, const Frame& frame,
+std::optional<double> reading(const EmbryoScene& scene, const RecordedDay& day,
                               const std::string& quantity, std::optional<int> structure);
 
 /// The left kidney of the healthy system: the first structure of kind "kidney" and side "left" that
@@ -40,7 +40,7 @@ std::optional<ScoreMeasures> score_measures(const EmbryoScene& scene, const Fram
 
 /// A left structure mirrored in the median plane against its right partner: largest distance of a
 /// vertex from the other surface, over the body's length. Absent under a disease or without pairs.
-std::optional<double> mirror_error(const EmbryoScene& scene, const Frame& frame);
+std::optional<double> mirror_error(const EmbryoScene& scene, const RecordedDay& day);
 
 /// Distance of a duct's recorded end from where its anchor is by the recorded shapes, over the
 /// body's length; the largest of those with one anchor at the key frames before and after.

@@ -37,9 +37,16 @@ void describe(OptionVisitor& v, EmbryoSceneOptions& options) {
            .min = 1,
            .max = 64});
   v.value("expected", options.expected,
-          {.doc = "lists of what each disease is expected to change (.toml); absent: nothing is "
-                  "held against lists",
+          {.doc = "lists of what each disease is expected to change (.toml), and nothing without "
+                  "one; absent: no change is held against a list",
            .named = Named::file});
+  v.value("queries", options.queries,
+          {.doc = "folder of the viewer's queries in SPARQL, q1.rq to q8.rq, for the method that "
+                  "asks them; absent: none is asked",
+           .named = Named::folder});
+  v.value("count_mistakes", options.count_mistakes,
+          {.doc = "whether an ontology with mistakes that leave a model is taken, and they are "
+                  "counted; false: every mistake is an error"});
 }
 
 }  // namespace geoprior::embryo

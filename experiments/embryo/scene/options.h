@@ -22,6 +22,8 @@ struct EmbryoSceneOptions {
   std::vector<std::string> only;
   int copies = 1;
   std::optional<std::string> expected;
+  std::optional<std::string> queries;  ///< folder
+  bool count_mistakes = false;
 };
 void describe(OptionVisitor& v, EmbryoSceneOptions& options);
 

@@ -138,9 +138,11 @@ std::shared_ptr<EmbryoScene> load_embryo_scene(const EmbryoSceneOptions& options
   scene->options = options;
   scene->files = read_source_files(options, folder);
   const Graph own = read_graph_of(scene->files);
+  const std::string& where = scene->files.triples.front().where;
   scene->violations = violations(own);
-  scene->ontology =
-      make_ontology(own, {options.parameter_set, 0}, scene->files.triples.front().where);
+  require_model(scene->violations, options.count_mistakes ? Mistakes::counted : Mistakes::refused,
+                where);
+  scene->ontology = make_ontology(own, {options.parameter_set, 0}, where);
   scene->graph = options.copies == 1 ? own : replicated(own, options.copies);
   scene->disease = disease_of(options, scene->ontology);
   add_consequences(*scene);
@@ -149,7 +151,8 @@ std::shared_ptr<EmbryoScene> load_embryo_scene(const EmbryoSceneOptions& options
   choose_days(*scene);
   if (options.expected) {
     const auto file = find_file(*options.expected, folder, "experiments/embryo", "scene.expected");
-    if (options.disease) scene->expected = read_expected_changes(file, *options.disease);
+    scene->expected =
+        options.disease ? read_expected_changes(file, *options.disease) : ExpectedChanges();
     scene->files.paths.push_back(file);
   }
   return scene;

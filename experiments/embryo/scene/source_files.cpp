@@ -70,9 +70,9 @@ SourceFiles read_source_files(const EmbryoSceneOptions& options,
   files.rules = read_text_file(rules);
   files.rules_where = rules.string();
   files.paths.push_back(rules);
-  for (int q = 1; q <= kViewerQueries; ++q) {
+  for (int q = 1; options.queries && q <= kViewerQueries; ++q) {
     const auto query =
-        find_below("queries/q" + std::to_string(q) + ".rq", folder, "the viewer's queries");
+        find_below(*options.queries + "/q" + std::to_string(q) + ".rq", folder, "scene.queries");
     files.queries.push_back(read_text_file(query));
     files.paths.push_back(query);
   }

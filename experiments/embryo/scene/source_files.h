@@ -18,7 +18,8 @@ struct SourceFiles {
   };
   std::vector<Triples> triples;  ///< the ontology, then the additions
   std::string rules, rules_where;
-  std::vector<std::string> queries;          ///< of the viewer as SPARQL, the first at place 0
+  std::vector<std::string>
+      queries;  ///< of the viewer as SPARQL, the first at place 0; none where no folder is named
   std::vector<std::filesystem::path> paths;  ///< of all that was read
 };
 

@@ -10,6 +10,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "models/embryo/body/convex_pieces.h"
+#include "models/embryo/shape/smooth_minimum.h"
 
 namespace geoprior::embryo {
 namespace {
@@ -70,7 +71,7 @@ class Body::DayShapes {
     shape.center = frame(motion) + length_ * motion.keys->place(day);
     for (const int stop : plan.stops) {
       const double k = linear() ? 0 : kStopEase * length_;
-      shape.center.z() = bounded(shape.center.z(), of(stop).center.z(), k);
+      shape.center.z() = smooth_minimum(shape.center.z(), of(stop).center.z(), k);
     }
     shape.axes = motion.keys->axes(day);
     for (const Turn& turn : plan.turns) {
@@ -197,7 +198,7 @@ int Body::stage_of(double day) const {
 
 double Body::held(double day, const std::optional<double>& from) const {
   if (!from) return day;
-  return bounded(day, *from, plan_.interpolation == Interpolation::linear ? 0 : kHoldEase);
+  return smooth_minimum(day, *from, plan_.interpolation == Interpolation::linear ? 0 : kHoldEase);
 }
 
 bool Body::has_shape(int structure) const {

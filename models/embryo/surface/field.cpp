@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "models/embryo/shape/smooth_minimum.h"
 
 namespace geoprior::embryo {
 namespace {
@@ -63,13 +64,6 @@ double ellipsoid_area(const Vector3d& r) {
 }
 
 }  // namespace
-
-double smooth_minimum(double a, double b, double k) {
-  const double h = k - std::abs(a - b);
-  return h > 0 ? std::min(a, b) - h * h / (4 * k) : std::min(a, b);
-}
-
-double smooth_maximum(double a, double b, double k) { return -smooth_minimum(-a, -b, k); }
 
 double ovoid_field(const Shape& ovoid, const Vector3d& x) {
   const double r_min = ovoid.radii.minCoeff();

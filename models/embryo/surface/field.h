@@ -34,11 +34,6 @@
 /// Source: Quilez 2013 (polynomial smooth minimum, exact in its two arguments); thesis 2.3.
 namespace geoprior::embryo {
 
-/// min(a, b), smooth where they differ by less than `k` (m): min - (k - |a - b|)^2 / (4 k). Sharp
-/// for k = 0.
-double smooth_minimum(double a, double b, double k);
-double smooth_maximum(double a, double b, double k);
-
 /// What divides a structure: a slab that descends into it, or, of a product, the plane that it ends
 /// at.
 struct Septum {

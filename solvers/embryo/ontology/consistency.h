@@ -11,9 +11,16 @@
 namespace geoprior::embryo {
 
 struct ViolationKind {
+  enum class Theme { sources, time, geometry, relations };
+
   std::string_view name;
+  Theme theme;
+  bool leaves_a_model;       ///< an ontology with it can be read and looked at all the same
   std::string_view meaning;  ///< a whole sentence
 };
+
+/// What is done with violations that leave a model; the others are always refused.
+enum class Mistakes { refused, counted };
 
 /// Every kind that `violations` can give, by name.
 std::span<const ViolationKind> violation_kinds();
@@ -23,5 +30,13 @@ std::span<const ViolationKind> violation_kinds();
 /// Terms of other namespaces are left alone. One mistake gives one violation: what can only be
 /// judged where a statement is well-formed is not judged where it is not.
 std::vector<Violation> violations(const Graph& graph);
+
+/// Of a name that `violations` gives.
+const ViolationKind& violation_kind(std::string_view name);
+
+/// @param where  name of the file, for messages
+/// @throws Error  with file and line: the first violation that is refused, and how many more are
+void require_model(const std::vector<Violation>& found, Mistakes mistakes,
+                   const std::string& where);
 
 }  // namespace geoprior::embryo

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "core/error.h"
-#include "solvers/embryo/ontology/consistency.h"
 #include "solvers/embryo/ontology/geometry.h"
 #include "solvers/embryo/ontology/typed_graph.h"
 
@@ -13,15 +12,7 @@ namespace geoprior::embryo {
 
 namespace {
 
-void refuse_violations(const Graph& graph, const std::string& where) {
-  const std::vector<Violation> found = violations(graph);
-  if (found.empty()) return;
-  const auto more = found.size() - 1;
-  throw Error(found[0].message + (more > 0 ? ", and " + std::to_string(more) + " more" : ""),
-              where + ":" + std::to_string(found[0].line));
-}
-
-/// Reads a graph without violations.
+/// Reads a graph whose violations leave a model.
 class OntologyReader {
  public:
   OntologyReader(const Graph& graph, const OntologySelection& selection, const std::string& where)
@@ -314,7 +305,6 @@ class OntologyReader {
 
 Ontology make_ontology(const Graph& graph, const OntologySelection& selection,
                        const std::string& where) {
-  refuse_violations(graph, where);
   return OntologyReader(graph, selection, where).read();
 }
 

@@ -14,12 +14,12 @@ struct OntologySelection {
   int stage_shift = 0;
 };
 
-/// Reads a graph in our vocabulary; what is in other namespaces is left alone.
+/// Reads a graph in our vocabulary of which a model can be made (`require_model`, consistency.h);
+/// what is in other namespaces is left alone.
 ///
 /// @param where  name of the file, for messages
-/// @throws Error  with file and line: the first violation (consistency.h), no stage, no
-///                crown-rump length, a parameter set that is not there, a shift that leaves no
-///                stage
+/// @throws Error  with the file: no stage, no crown-rump length, a parameter set that is not there,
+///                a shift that leaves no stage
 Ontology make_ontology(const Graph& graph, const OntologySelection& selection,
                        const std::string& where);
 

@@ -10,7 +10,7 @@ constexpr std::array<std::string_view, 9> kOfReductions{"same", "max",  "min", "
                                                         "p99",  "mean", "sum", "last"};
 constexpr std::array<std::string_view, 2> kShadings{"smooth", "flat"};
 constexpr std::array<std::string_view, 3> kMaterials{"clay", "paper", "water"};
-constexpr std::array<std::string_view, 2> kAcross{"variants", "states"};
+constexpr std::array<std::string_view, 3> kAcross{"variants", "states", "cases"};
 
 }  // namespace
 
@@ -163,8 +163,9 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   FigureView& t = table.view;
   v.value("at_parameter", t.at_parameter, {.doc = "frame that is drawn; absent: the last"});
   v.value("parameters", t.parameters, {.doc = "several frames"});
-  describe_choice(v, "across", t.across, kAcross,
-                  {.doc = "what stands side by side; states: the frames, a row a variant"});
+  describe_choice(
+      v, "across", t.across, kAcross,
+      {.doc = "what stands side by side; states: the frames, or cases, a row a variant"});
   v.value("part", t.part, {.doc = "part of the frames"});
   v.value("label", t.label,
           {.doc = "label of the rows between `above` and `below`; absent: the part's name"});

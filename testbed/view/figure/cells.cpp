@@ -227,6 +227,49 @@ std::vector<FigureRow> rows_of_variants(const CaseRecord& c, const Variants& var
   return rows;
 }
 
+using Cases = std::vector<const CaseRecord*>;
+
+/// Cases side by side, a row a variant and state: those of the first case.
+std::vector<FigureRow> rows_of_cases(const Cases& cases, const Variants& variants,
+                                     const FigureView& view, const OpenedRun& run,
+                                     std::size_t most_columns) {
+  std::vector<FigureRow> rows;
+  const auto blocks = wrap(cases, most_columns);
+  for (const std::string& variant : variants) {
+    for (const DrawnState& state : drawn_states(*cases.front(), view)) {
+      for (const Cases& block : blocks) {
+        FigureRow row;
+        if (variants.size() > 1) row.label = display_name(variant) + ", ";
+        row.label += state.label;
+        for (const CaseRecord* c : block) {
+          row.cells.push_back(
+              make_cell(*c, variant, state.wanted, state_of(*c, state.wanted), view, run));
+          row.cells.back().label = display_name(c->name);
+        }
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+/// Rows of one case after the other.
+std::vector<FigureRow> rows_case_by_case(const Cases& cases, const Variants& variants,
+                                         const FigureView& view, const OpenedRun& run,
+                                         std::size_t most_columns) {
+  const bool states_across = view.across == FigureView::Across::states;
+  std::vector<FigureRow> rows;
+  for (const CaseRecord* c : cases) {
+    if (rows.size() >= kMostRows) break;
+    for (FigureRow& row : states_across ? rows_of_variants(*c, variants, view, run, most_columns)
+                                        : rows_of_states(*c, variants, view, run, most_columns)) {
+      if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c->name;
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
 /// Written in capitals wherever they stand alone.
 const std::set<std::string> kAcronyms{"apic", "flip", "jonswap", "pic", "tma"};
 
@@ -266,20 +309,19 @@ std::string with_unit(double value, const std::string& unit) {
 std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view,
                                      std::size_t most_columns) {
   const RunRecord& record = run.record();
-  const auto cases = choose(view.cases, case_names(record), "figure_view.cases");
+  const auto wanted = choose(view.cases, case_names(record), "figure_view.cases");
   const Variants variants = choose(view.variants, variant_names(record), "figure_view.variants");
-  std::vector<FigureRow> rows;
+  Cases cases;
   for (const CaseRecord& c : record.cases) {
-    if (std::find(cases.begin(), cases.end(), c.name) == cases.end()) continue;
-    const bool states_across = view.across == FigureView::Across::states;
-    for (FigureRow& row : states_across ? rows_of_variants(c, variants, view, run, most_columns)
-                                        : rows_of_states(c, variants, view, run, most_columns)) {
-      if (rows.size() == kMostRows) return rows;
-      if (cases.size() > 1) row.label += (row.label.empty() ? "" : ", ") + c.name;
-      row.has_headings = rows.empty() || !same_labels(rows.back(), row);
-      rows.push_back(std::move(row));
-    }
+    if (std::find(wanted.begin(), wanted.end(), c.name) != wanted.end()) cases.push_back(&c);
   }
+  if (cases.empty()) return {};
+  std::vector<FigureRow> rows = view.across == FigureView::Across::cases
+                                    ? rows_of_cases(cases, variants, view, run, most_columns)
+                                    : rows_case_by_case(cases, variants, view, run, most_columns);
+  if (rows.size() > kMostRows) rows.resize(kMostRows);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    rows[i].has_headings = !same_labels(rows[i - 1], rows[i]);
   return rows;
 }
 

@@ -24,7 +24,7 @@ struct NamedPart {
 
 /// One panel of a figure before it is drawn: a variant in one state.
 struct FigureCell {
-  std::string label;  ///< of the variant, or of the state when states stand side by side
+  std::string label;  ///< of the variant, or of the state or case when those stand side by side
   std::optional<double> parameter;  ///< of the frame that is drawn
   std::optional<Part> part;  ///< absent: the variant has no such frame (it failed, or was left out)
   std::string note = "no frame";  ///< stands in place of the part
@@ -40,9 +40,9 @@ struct FigureRow {
 };
 
 /// Which states are drawn, loaded from the run's files: variants as columns (wrapped past
-/// `most_columns`), parameters and cases as rows (at most eight), or with `across` parameters as
-/// columns and variants as rows. The frame nearest to a wanted parameter is taken, and the label
-/// gives the parameter it really has; parameters with the same nearest frame make one row.
+/// `most_columns`), parameters and cases as rows (at most eight), or with `across` parameters or
+/// cases as columns and variants as rows. The frame nearest to a wanted parameter is taken, and the
+/// label gives the parameter it really has; parameters with the same nearest frame make one row.
 /// @throws Error  naming the variant, case or part that the run does not have, or a damaged file
 std::vector<FigureRow> collect_cells(const OpenedRun& run, const FigureView& view,
                                      std::size_t most_columns = kMostColumns);

@@ -26,12 +26,13 @@ TEST(EmbryoOrgans, PolesAndLengthsAreReadOffTheSurface) {
   Frame frame = empty_frame(40);
   add_surface(frame, 0, box({0, 0, 1}, {1, 1, 3}));
   add_shape(frame, 0, Primitive::ovoid, {0.5, 0.5, 2}, {0.5, 0.5, 1});
-  EXPECT_EQ(reading(scene, frame, "crown_rump_length", {}).value(), 1);
-  EXPECT_EQ(reading(scene, frame, "kidney_length", 0).value(), 2);
-  EXPECT_EQ(reading(scene, frame, "upper_pole_height", 0).value(), 3);
-  EXPECT_EQ(reading(scene, frame, "lower_pole_height", 0).value(), 1);
-  EXPECT_FALSE(reading(scene, frame, "upper_pole_height", {}));
-  EXPECT_FALSE(reading(scene, frame, "vertebral_level", 0)) << "there are no vertebrae";
+  EXPECT_EQ(reading(scene, RecordedDay(frame), "crown_rump_length", {}).value(), 1);
+  EXPECT_EQ(reading(scene, RecordedDay(frame), "kidney_length", 0).value(), 2);
+  EXPECT_EQ(reading(scene, RecordedDay(frame), "upper_pole_height", 0).value(), 3);
+  EXPECT_EQ(reading(scene, RecordedDay(frame), "lower_pole_height", 0).value(), 1);
+  EXPECT_FALSE(reading(scene, RecordedDay(frame), "upper_pole_height", {}));
+  EXPECT_FALSE(reading(scene, RecordedDay(frame), "vertebral_level", 0))
+      << "there are no vertebrae";
 }
 
 TEST(EmbryoOrgans, HilumTurnsFromVentralToMedial) {
@@ -42,12 +43,12 @@ TEST(EmbryoOrgans, HilumTurnsFromVentralToMedial) {
   auto quaternion = frame.tables.at(recorded::kShapes).rows.row(0).segment<4>(5);
   // Local x is turned by -90 degrees about z to -y, ventral; by 180 to -x, medial of a left one.
   quaternion << std::sqrt(0.5), 0, 0, -std::sqrt(0.5);
-  EXPECT_NEAR(reading(scene, frame, "hilum_angle", 0).value(), 0, 1e-12);
+  EXPECT_NEAR(reading(scene, RecordedDay(frame), "hilum_angle", 0).value(), 0, 1e-12);
   quaternion << 0, 0, 0, 1;
-  EXPECT_NEAR(reading(scene, frame, "hilum_angle", 0).value(), kPi / 2, 1e-12);
+  EXPECT_NEAR(reading(scene, RecordedDay(frame), "hilum_angle", 0).value(), kPi / 2, 1e-12);
   scene.ontology.structures[0].side = "right";
   quaternion << 1, 0, 0, 0;
-  EXPECT_NEAR(reading(scene, frame, "hilum_angle", 0).value(), kPi / 2, 1e-12);
+  EXPECT_NEAR(reading(scene, RecordedDay(frame), "hilum_angle", 0).value(), kPi / 2, 1e-12);
 }
 
 TEST(EmbryoOrgans, LevelsCountVertebraeFromT12) {
@@ -56,7 +57,7 @@ TEST(EmbryoOrgans, LevelsCountVertebraeFromT12) {
   for (int i = 0; i < 6; ++i) add_shape(frame, i, Primitive::point, {0, 0, 5.0 - i}, {0, 0, 0});
   add_shape(frame, 6, Primitive::point, {0, 0, 6}, {0, 0, 0});
   add_shape(frame, 7, Primitive::ovoid, {0, 0, 3.5}, {1, 1, 1});
-  EXPECT_NEAR(reading(scene, frame, "vertebral_level", 7).value(), 14.5, 1e-12);
+  EXPECT_NEAR(reading(scene, RecordedDay(frame), "vertebral_level", 7).value(), 14.5, 1e-12);
 }
 
 /// Two stages of days 40 to 42 and 42 to 44; crown-rump lengths in them.
@@ -105,9 +106,10 @@ TEST(EmbryoMirror, APairThatIsOffByATenthIsSeen) {
   Frame frame = empty_frame(40);
   add_surface(frame, 0, box({1, 0, 0}, {2, 1, 1}));
   add_surface(frame, 1, box({-2.1, 0, 0}, {-1, 1, 1}));
-  EXPECT_NEAR(mirror_error(scene, frame).value(), 0.1, 1e-12);
+  EXPECT_NEAR(mirror_error(scene, RecordedDay(frame)).value(), 0.1, 1e-12);
   scene.disease = 0;
-  EXPECT_FALSE(mirror_error(scene, frame)) << "nothing is said of symmetry under a disease";
+  EXPECT_FALSE(mirror_error(scene, RecordedDay(frame)))
+      << "nothing is said of symmetry under a disease";
 }
 
 TEST(EmbryoDucts, AnEndThatIsOffItsAnchorIsSeen) {

@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
+#include "models/embryo/surface/mesh.h"
+#include "solvers/embryo/rules/effects.h"
+#include "solvers/embryo/state/development.h"
 #include "tests/embryo/ontology/planted.h"
 #include "tests/embryo/ontology/small_ontology.h"
 
@@ -169,6 +173,23 @@ TEST(Consistency, HasAPlantOfEveryKind) {
   EXPECT_EQ(planted_kinds, kinds);
   EXPECT_EQ(kinds.size(), violation_kinds().size());
   EXPECT_TRUE(std::ranges::is_sorted(violation_kinds(), {}, &ViolationKind::name));
+}
+
+/// Of what leaves a model one is made, with surfaces on every day; the rest is refused either way.
+TEST(Consistency, LeavesAModelWhereItSaysSo) {
+  for (const Plant& plant : kSmallPlants) {
+    const std::string text = planted(test::small_ontology(), plant);
+    EXPECT_THROW(test::read_ontology(text), Error) << plant.by;
+    if (!violation_kind(plant.kind).leaves_a_model) {
+      EXPECT_THROW(test::read_ontology(text, {}, Mistakes::counted), Error) << plant.by;
+      continue;
+    }
+    SCOPED_TRACE(plant.kind + ": " + plant.by);
+    const Ontology ontology = test::read_ontology(text, {"Slow", 0}, Mistakes::counted);
+    const Development development(ontology, effects_without_rules(ontology, std::nullopt), {});
+    for (const Stage& stage : ontology.stages)
+      EXPECT_FALSE(day_meshes(development.at(stage.middle()), {.triangles = 200}).empty());
+  }
 }
 
 TEST(Consistency, NamesTheLineOfTheMistake) {

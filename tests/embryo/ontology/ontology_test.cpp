@@ -8,8 +8,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "solvers/embryo/ontology/read_ontology.h"
-#include "solvers/embryo/triples/read.h"
+#include "tests/embryo/ontology/planted.h"
 #include "tests/embryo/ontology/small_ontology.h"
 
 namespace geoprior::embryo {
@@ -19,13 +18,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Ontology small_one(const OntologySelection& selection = {}) {
-  return make_ontology(read_graph(test::small_ontology(), RdfFormat::turtle, "small.ttl"),
-                       selection, "small.ttl");
+  return test::read_ontology(test::small_ontology(), selection);
 }
 
 std::string small_refusal(const std::string& text, const OntologySelection& selection = {}) {
   try {
-    make_ontology(read_graph(text, RdfFormat::turtle, "small.ttl"), selection, "small.ttl");
+    test::read_ontology(text, selection);
   } catch (const Error& error) {
     return error.what();
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/embryo/ontology/consistency.h"
+#include "solvers/embryo/ontology/read_ontology.h"
 #include "solvers/embryo/triples/read.h"
 
 namespace geoprior::embryo::test {
@@ -32,6 +33,14 @@ inline std::string planted(std::string text, const Plant& plant) {
 
 inline std::vector<Violation> violations_in(const std::string& text) {
   return violations(read_graph(text, RdfFormat::turtle, "planted.ttl"));
+}
+
+/// @throws Error  of what is refused
+inline Ontology read_ontology(const std::string& text, const OntologySelection& selection = {},
+                              Mistakes mistakes = Mistakes::refused) {
+  const Graph graph = read_graph(text, RdfFormat::turtle, "small.ttl");
+  require_model(violations(graph), mistakes, "small.ttl");
+  return make_ontology(graph, selection, "small.ttl");
 }
 
 inline std::string described(const std::vector<Violation>& found) {

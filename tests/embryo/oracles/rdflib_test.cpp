@@ -1,6 +1,7 @@
 // The viewer's queries against an engine that shares nothing with them: rdflib on the same graph.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -28,21 +29,24 @@ void expect_rows_of_rdflib(const Graph& graph, const ViewerQuestion& question) {
     EXPECT_EQ(query_rows(queries, q, question), sorted_csv_rows(answers[q - 1])) << "query " << q;
 }
 
+/// Healthy and under one disease, each in another parameter set; with GEOPRIOR_LONG, under all.
 TEST(LongQueries, HaveTheRowsOfRdflibUnderEveryDisease) {
   const Graph graph = test::urinary_graph();
   const std::vector<ViewerQuestion> questions = {
       {.day = 44, .structure = "LeftMetanephros", .system = "UrinarySystem"},
       {.day = 31, .structure = "Bladder", .system = "Body"},
       {.day = 84, .structure = "LeftRenalPelvis", .system = "UrinarySystem"}};
+  auto diseases = test::cases_of(graph);
+  EXPECT_EQ(diseases.size(), 10u);
+  if (std::getenv("GEOPRIOR_LONG") == nullptr) diseases.resize(2);
   std::size_t turn = 0;
-  for (const auto& disease : test::cases_of(graph)) {
+  for (const auto& disease : diseases) {
     SCOPED_TRACE(disease.value_or("healthy"));
     const std::string set = turn % 2 == 0 ? "Ascent" : "Elongation";
     expect_rows_of_rdflib(saturated_graph(graph, test::developed(graph, disease, set)),
                           questions[turn % questions.size()]);
     ++turn;
   }
-  EXPECT_EQ(turn, 10u);
 }
 
 // What Q7 looks for, and a list in a list's place, which ours has not.

@@ -100,20 +100,5 @@ TEST(MonotoneCurve, RefusesDaysOutOfOrderAndNumbersThatAreNone) {
   EXPECT_THROW(curve_of({0, 1}, {1, std::nan("")}), Error);
 }
 
-/// Within k of the bound the slope falls from 1 to 0; the largest loss, k/4, is at the bound.
-TEST(Bounded, IsContinuouslyDifferentiableAndNeverAboveTheBound) {
-  EXPECT_EQ(bounded(0.5, 1, 0.5), 0.5);
-  EXPECT_EQ(bounded(1.5, 1, 0.5), 1);
-  EXPECT_DOUBLE_EQ(bounded(1, 1, 0.5), 1 - 0.125);
-  EXPECT_EQ(bounded(1.2, 1, 0), 1);
-  const double h = 1e-6;
-  for (double value = 0; value < 2; value += 0.05) {
-    EXPECT_LE(bounded(value, 1, 0.5), 1);
-    const double before = (bounded(value, 1, 0.5) - bounded(value - h, 1, 0.5)) / h;
-    const double after = (bounded(value + h, 1, 0.5) - bounded(value, 1, 0.5)) / h;
-    EXPECT_NEAR(before, after, 2.1 * h);
-  }
-}
-
 }  // namespace
 }  // namespace geoprior::embryo

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "models/embryo/shape/curve.h"
+#include "models/embryo/shape/smooth_minimum.h"
 #include "tests/embryo/surface/samples.h"
 
 namespace geoprior::embryo {
@@ -136,14 +137,21 @@ TEST(EmbryoField, SupportsReachWhereTheSolidEnds) {
   EXPECT_NEAR(rod.support(Vector3d::UnitZ()), 2, 1e-14);
 }
 
-TEST(EmbryoField, SmoothMinimumIsExactAwayAndAQuarterOfKLowerWhereBothAreEqual) {
-  EXPECT_EQ(smooth_minimum(1, 2, 0.5), 1);
+/// Within k of the bound the slope falls from 1 to 0; the largest loss, k/4, is at the bound.
+TEST(EmbryoField, SmoothMinimumIsExactAwayAndContinuouslyDifferentiable) {
+  EXPECT_EQ(smooth_minimum(0.5, 1, 0.5), 0.5);
+  EXPECT_EQ(smooth_minimum(1.5, 1, 0.5), 1);
   EXPECT_EQ(smooth_minimum(2, 2, 0.4), 1.9);
-  EXPECT_EQ(smooth_minimum(1, 1.1, 0), 1);
+  EXPECT_EQ(smooth_minimum(1.2, 1, 0), 1);
   EXPECT_EQ(smooth_maximum(2, 2, 0.4), 2.1);
-  // One-sided slopes at the end of the blend: both 1.
-  const double e = 1e-6;
-  EXPECT_NEAR((smooth_minimum(1.5 + e, 2, 0.5) - smooth_minimum(1.5, 2, 0.5)) / e, 1, 1e-5);
+  const double h = 1e-6;
+  for (double value = 0; value < 2; value += 0.05) {
+    EXPECT_LE(smooth_minimum(value, 1, 0.5), 1);
+    const double at = smooth_minimum(value, 1, 0.5);
+    const double before = (at - smooth_minimum(value - h, 1, 0.5)) / h;
+    const double after = (smooth_minimum(value + h, 1, 0.5) - at) / h;
+    EXPECT_NEAR(before, after, 2.1 * h);
+  }
 }
 
 TEST(EmbryoField, ASeptumOpensASlotOfItsThicknessUpToItsTip) {

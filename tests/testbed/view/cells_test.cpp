@@ -93,6 +93,29 @@ TEST(Cells, StatesStandSideBySideWhenTheViewSaysAcross) {
   EXPECT_TRUE(rows[0].has_headings);
 }
 
+TEST(Cells, CasesStandSideBySideWhenTheViewSaysAcross) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  for (const char* name : {"wide-one", "narrow", "flat"}) {
+    record.cases.push_back(record.cases[0]);
+    record.cases.back().name = name;
+  }
+  FigureView view;
+  view.across = FigureView::Across::cases;
+  view.at_parameter = 45;
+  view.cases = {"wide-one", "narrow", "flat"};
+  view.variants = {"second-box"};
+  const auto rows = collect_cells(OpenedRun(folder.path, record), view, 2);
+  ASSERT_EQ(rows.size(), 2u) << "three cases, two of them side by side";
+  EXPECT_EQ(rows[0].label, "Angle 45\u00b0");
+  EXPECT_EQ(rows[0].cells.at(0).label, "Wide one");
+  EXPECT_EQ(rows[1].cells.at(0).label, "Flat");
+  EXPECT_TRUE(rows[1].has_headings);
+  view.variants.clear();
+  EXPECT_EQ(collect_cells(OpenedRun(folder.path, record), view).at(1).label,
+            "Second box, Angle 45\u00b0");
+}
+
 TEST(FrameTimes, AreEvenlyChosenWithTheFirstAndTheLast) {
   const TestFolder folder;
   const RunRecord record = make_fake_run(folder.path);
