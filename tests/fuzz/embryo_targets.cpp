@@ -18,7 +18,7 @@ void fuzz_graph(std::string_view text, embryo::RdfFormat format) {
   allow_error([&] {
     const embryo::Graph graph = embryo::read_graph(text, format, "fuzz");
     allow_error([&] {
-      embryo::require_model(embryo::violations(graph), embryo::Mistakes::counted, "fuzz");
+      embryo::require_model(graph, embryo::violations(graph), embryo::Mistakes::counted);
       embryo::make_ontology(graph, {.parameter_set = "Slow", .stage_shift = 1}, "fuzz");
     });
     const std::string written = embryo::to_ntriples(graph);

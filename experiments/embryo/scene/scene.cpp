@@ -140,8 +140,8 @@ std::shared_ptr<EmbryoScene> load_embryo_scene(const EmbryoSceneOptions& options
   const Graph own = read_graph_of(scene->files);
   const std::string& where = scene->files.triples.front().where;
   scene->violations = violations(own);
-  require_model(scene->violations, options.count_mistakes ? Mistakes::counted : Mistakes::refused,
-                where);
+  require_model(own, scene->violations,
+                options.count_mistakes ? Mistakes::counted : Mistakes::refused);
   scene->ontology = make_ontology(own, {options.parameter_set, 0}, where);
   scene->graph = options.copies == 1 ? own : replicated(own, options.copies);
   scene->disease = disease_of(options, scene->ontology);

@@ -60,7 +60,6 @@ struct Structure {
   std::optional<int> mirror_of;
   bool crown_rump = false;  ///< the line whose length is the crown-rump length
   bool regresses = false;   ///< it shrinks at the end of its life
-  int line = 0;             ///< of the file
 };
 
 enum class ProcessKind { growth, migration, rotation, interaction, division, fixation };
@@ -84,13 +83,11 @@ struct ProcessEntry {
   std::optional<int> septum;
   std::optional<int> stops_at;
   double blend = 0;  ///< m
-  int line = 0;
 };
 
 struct Disease {
   std::string name, label, side;
   std::vector<int> disables, enables;  ///< processes
-  int line = 0;
 };
 
 /// A number of the literature, in SI units and days.

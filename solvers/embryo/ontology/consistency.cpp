@@ -157,8 +157,7 @@ std::vector<Violation> violations(const Graph& graph) {
   return found;
 }
 
-void require_model(const std::vector<Violation>& found, Mistakes mistakes,
-                   const std::string& where) {
+void require_model(const Graph& graph, const std::vector<Violation>& found, Mistakes mistakes) {
   const auto refused = [&](const Violation& one) {
     return mistakes == Mistakes::refused || !violation_kind(one.kind).leaves_a_model;
   };
@@ -166,7 +165,7 @@ void require_model(const std::vector<Violation>& found, Mistakes mistakes,
   if (first == found.end()) return;
   const auto more = std::ranges::count_if(first + 1, found.end(), refused);
   throw Error(first->message + (more > 0 ? ", and " + std::to_string(more) + " more" : ""),
-              where + ":" + std::to_string(first->line));
+              graph.place(first->line));
 }
 
 }  // namespace geoprior::embryo

@@ -34,9 +34,8 @@ std::vector<Violation> violations(const Graph& graph);
 /// Of a name that `violations` gives.
 const ViolationKind& violation_kind(std::string_view name);
 
-/// @param where  name of the file, for messages
-/// @throws Error  with file and line: the first violation that is refused, and how many more are
-void require_model(const std::vector<Violation>& found, Mistakes mistakes,
-                   const std::string& where);
+/// @throws Error  with file and line: the first of a graph's violations that is refused, and how
+///                many more are
+void require_model(const Graph& graph, const std::vector<Violation>& found, Mistakes mistakes);
 
 }  // namespace geoprior::embryo

@@ -92,7 +92,6 @@ class OntologyReader {
       structure.mirror_of = optional_place(structures_, node, "mirrorOf");
       structure.crown_rump = graph_.flag(node, "crownRump");
       structure.regresses = graph_.flag(node, "regresses");
-      structure.line = graph_.line(node);
       out_.structures.push_back(std::move(structure));
     }
   }
@@ -137,7 +136,6 @@ class OntologyReader {
       process.requires_ = places(processes_, node, "requires");
       process.dormant = graph_.flag(node, "dormant");
       process.of_set = set.has_value();
-      process.line = graph_.line(node);
       read_span(node, process);
       read_parameters(node, process);
       out_.processes.push_back(std::move(process));
@@ -200,7 +198,7 @@ class OntologyReader {
       out_.diseases.push_back({local(node), graph_.text(node, "rdfs:label"),
                                graph_.text(node, "side"),
                                kept_of(places(processes_, node, "disables")),
-                               kept_of(places(processes_, node, "enables")), graph_.line(node)});
+                               kept_of(places(processes_, node, "enables"))});
     }
   }
 

@@ -74,6 +74,19 @@ void Graph::add(const Triple& triple) {
   sorted_ = false;
 }
 
+int Graph::begin_file(const std::string& name, int lines) {
+  files_.push_back({name, lines_});
+  lines_ += lines;
+  return files_.back().before;
+}
+
+std::string Graph::place(int line) const {
+  const auto after = std::ranges::lower_bound(files_, line, {}, &File::before);
+  if (line <= 0 || after == files_.begin()) return {};
+  const File& file = *(after - 1);
+  return file.name + ":" + std::to_string(line - file.before);
+}
+
 void Graph::sort() {
   if (sorted_) return;
   const int terms = dictionary_.size();

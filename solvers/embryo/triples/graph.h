@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "solvers/embryo/triples/dictionary.h"
@@ -13,7 +14,7 @@ namespace geoprior::embryo {
 
 struct Triple {
   Term subject = -1, predicate = -1, object = -1;
-  int line = 0;  ///< of the file that it was read from, from 1; 0: derived
+  int line = 0;  ///< of all files read, one after the other, from 1 (`Graph::place`); 0: derived
 };
 
 /// One position of consecutive triples: what `Graph::objects` and `Graph::subjects` give. It reads
@@ -75,6 +76,11 @@ class Graph {
   void add(Term subject, Term predicate, Term object, int line = 0) {
     add(Triple{subject, predicate, object, line});
   }
+  /// Lines that are read from here on are those of a file. @return  how many there were before it
+  int begin_file(const std::string& name, int lines);
+  /// "file:12" of a triple's line; empty for 0.
+  [[nodiscard]] std::string place(int line) const;
+
   /// Of equal triples the one of the least line that is not 0 stays.
   void sort();
   [[nodiscard]] bool sorted() const { return sorted_; }
@@ -102,7 +108,14 @@ class Graph {
  private:
   void require_sorted() const;
 
+  struct File {
+    std::string name;
+    int before = 0;  ///< lines of the files before it
+  };
+
   Dictionary dictionary_;
+  std::vector<File> files_;
+  int lines_ = 0;                     ///< of all files
   std::vector<Triple> by_subject_;    ///< subject, predicate, object
   std::vector<Triple> by_predicate_;  ///< predicate, subject, object
   std::vector<Triple> by_object_;     ///< predicate, object, subject

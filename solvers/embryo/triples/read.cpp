@@ -99,7 +99,8 @@ void read_into(Graph& graph, std::string_view bytes, RdfFormat format, const std
   require_text(bytes, where);
   const int known = graph.dictionary().size();
   const std::string blank_prefix = known == 0 ? "" : "n" + std::to_string(known) + "-";
-  TripleSink sink(graph, where, limits);
+  const auto lines = 1 + std::ranges::count(bytes, '\n');
+  TripleSink sink(graph, where, graph.begin_file(where, static_cast<int>(lines)), limits);
   if (format == RdfFormat::rdfxml) {
     require_shallow_xml(bytes, limits.nesting, where);
     read_by_raptor(sink, bytes, blank_prefix);

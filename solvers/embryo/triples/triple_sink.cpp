@@ -64,7 +64,7 @@ Term TripleSink::blank(std::string_view label, int line) {
 
 void TripleSink::add(Term subject, Term predicate, Term object, int line) {
   if (++count_ > limits_.triples) refuse("too many triples", line, std::to_string(limits_.triples));
-  graph_.add(subject, predicate, object, line);
+  graph_.add(subject, predicate, object, before_ + line);
 }
 
 void TripleSink::require_short(std::string_view text, int line) const {

@@ -16,8 +16,9 @@ namespace geoprior::embryo {
 /// they have returned.
 class TripleSink {
  public:
-  TripleSink(Graph& graph, const std::string& where, const ReadLimits& limits)
-      : graph_(graph), where_(where), limits_(limits) {}
+  /// @param before  lines of the graph's other files
+  TripleSink(Graph& graph, const std::string& where, int before, const ReadLimits& limits)
+      : graph_(graph), where_(where), before_(before), limits_(limits) {}
 
   Term iri(std::string_view text, int line);
   Term literal(std::string_view text, std::string_view datatype, std::string_view language,
@@ -50,6 +51,7 @@ class TripleSink {
 
   Graph& graph_;
   const std::string& where_;
+  int before_;
   const ReadLimits& limits_;
   int count_ = 0;
   std::exception_ptr error_;

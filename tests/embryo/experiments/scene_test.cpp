@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "core/error.h"
 #include "solvers/embryo/state/development.h"
@@ -119,6 +120,29 @@ TEST(EmbryoScene, ASecondSystemIsAFileOfItsOwn) {
   EXPECT_TRUE(scene->violations.empty());
   const Development development(scene->ontology, scene->effects, {});
   EXPECT_GE(development.at(scene->days.back()).structures.size(), 3u);
+}
+
+TEST(EmbryoScene, MistakesAreErrorsUnlessTheyAreToBeCounted) {
+  EmbryoSceneOptions options;
+  options.ontology = "limb.ttl";
+  options.parameter_set = "";
+  options.additions = {"drawing.ttl"};
+  EXPECT_THAT(refusal_of(options), AllOf(HasSubstr("drawing.ttl:7: "), HasSubstr("and 3 more")));
+  options.count_mistakes = true;
+  const auto scene = load_embryo_scene(options, embryo_folder());
+  std::set<ViolationKind::Theme> themes;
+  for (const Violation& one : scene->violations) themes.insert(violation_kind(one.kind).theme);
+  EXPECT_EQ(scene->violations.size(), 4u);
+  EXPECT_EQ(themes.size(), 4u) << "one of each";
+}
+
+TEST(EmbryoScene, QueriesAreReadFromTheFolderNamed) {
+  EXPECT_TRUE(load_embryo_scene({}, embryo_folder())->files.queries.empty());
+  EmbryoSceneOptions options;
+  options.queries = "queries";
+  EXPECT_EQ(load_embryo_scene(options, embryo_folder())->files.queries.size(), 8u);
+  options.queries = "rules";
+  EXPECT_THAT(refusal_of(options), AllOf(HasSubstr("scene.queries"), HasSubstr("q1.rq")));
 }
 
 class EmbryoFiles : public test::RunTest {};

@@ -39,7 +39,7 @@ inline std::vector<Violation> violations_in(const std::string& text) {
 inline Ontology read_ontology(const std::string& text, const OntologySelection& selection = {},
                               Mistakes mistakes = Mistakes::refused) {
   const Graph graph = read_graph(text, RdfFormat::turtle, "small.ttl");
-  require_model(violations(graph), mistakes, "small.ttl");
+  require_model(graph, violations(graph), mistakes);
   return make_ontology(graph, selection, "small.ttl");
 }
 
