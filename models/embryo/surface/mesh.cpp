@@ -21,11 +21,12 @@ using Eigen::Vector3d;
 
 /// Triangles per squared box edge of surface, on average over its directions, measured.
 constexpr double kTrianglesPerSquare = 11;
-constexpr int kMostEmpty = 3;            ///< lattices that find no surface
-constexpr double kThinnestNeck = 0.01;   ///< in smallest radii
-constexpr double kNeckCells = 0.25;      ///< box edge in thicknesses t of the neck
-constexpr double kNeckWidthCells = 0.4;  ///< box edge along a neck's width in (r t)^(1/2)
-constexpr double kSeptumCells = 0.35;    ///< box edge in thicknesses of the septum
+constexpr int kMostEmpty = 3;             ///< lattices that find no surface
+constexpr double kLeastShare = 1.0 / 32;  ///< of a surface: what has less is all but swallowed
+constexpr double kThinnestNeck = 0.01;    ///< in smallest radii
+constexpr double kNeckCells = 0.25;       ///< box edge in thicknesses t of the neck
+constexpr double kNeckWidthCells = 0.4;   ///< box edge along a neck's width in (r t)^(1/2)
+constexpr double kSeptumCells = 0.35;     ///< box edge in thicknesses of the septum
 
 std::string field_name(const SolidField& field) {
   return "structure " + std::to_string(field.solids().front().structure);
@@ -136,6 +137,16 @@ Lattice choose_lattice(const SolidField& field, const SurfaceOptions& options) {
   return lattice;
 }
 
+/// Triangles of the member that has fewest.
+int fewest_triangles(const MarchedSurface& surface, std::size_t members) {
+  std::vector<int> counts(members, 0);
+  for (const int member : surface.member_of_triangle) ++counts[member];
+  int fewest = surface.mesh.triangle_count();
+  for (const int count : counts)
+    if (count >= kLeastShare * surface.mesh.triangle_count()) fewest = std::min(fewest, count);
+  return fewest;
+}
+
 Septum septum_of(const Cut& cut, int side) {
   return {cut.normal.normalized(), cut.point, cut.descent.normalized(), cut.tip,
           cut.thickness,           side};
@@ -163,9 +174,11 @@ StructureMesh solid_mesh(const SolidField& field, const SurfaceOptions& options)
   MarchOptions march_options;
   march_options.most_triangles = options.most_triangles;
   MarchedSurface surface = march(field, lattice, march_options, field_name(field));
-  // The area was an estimate: of what is cut or overlaps there is less.
-  for (int attempt = 0; surface.mesh.triangle_count() < options.triangles; ++attempt) {
-    const int found = surface.mesh.triangle_count();
+  // The area was an estimate: of what is cut or overlaps there is less, and of a group each member
+  // has a part of it.
+  for (int attempt = 0;; ++attempt) {
+    const int found = fewest_triangles(surface, field.solids().size());
+    if (found >= options.triangles) break;
     if (found == 0 && attempt == kMostEmpty)
       throw Error("nothing of it is left to draw", field_name(field),
                   "solids that no plane and no septum takes away");

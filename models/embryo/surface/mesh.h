@@ -10,7 +10,8 @@
 namespace geoprior::embryo {
 
 struct SurfaceOptions {
-  int triangles = 2000;  ///< of each mesh, at least
+  /// Of each structure, at least, but for one that others of its group leave less than 1/32 of.
+  int triangles = 2000;
   /// Fused structures blend and cuts have rounded edges. Off: the sharp union.
   bool blend = true;
   double cell = 0.7;               ///< edge of a lattice box in smallest radii, at most

@@ -204,5 +204,24 @@ TEST(EmbryoMesh, AskedForMoreTrianglesHasThem) {
   EXPECT_GE(mesh_of(samples::ovoid({0, 0, 0}, {1, 1, 1}), options).mesh.triangle_count(), 200);
 }
 
+/// A small ovoid beside a large one that it blends with; the next is swallowed, and not waited for.
+TEST(EmbryoMesh, EachStructureOfAGroupHasItsTriangles) {
+  for (const double centre : {1.2, 0.5}) {
+    DayState day;
+    day.structures.push_back({0, samples::ovoid({0, 0, 0}, {1, 1, 1})});
+    day.structures.push_back({1, samples::ovoid({centre, 0, 0}, {0.4, 0.4, 0.4})});
+    day.fused.push_back({{0, 1}, 0.05});
+    const auto meshes = day_meshes(day);
+    ASSERT_EQ(meshes.size(), 1u);
+    const auto& of = meshes[0].structure_of_triangle;
+    EXPECT_GE(std::count(of.begin(), of.end(), 0), 2000);
+    if (centre > 1) {
+      EXPECT_GE(std::count(of.begin(), of.end(), 1), 2000);
+    } else {
+      EXPECT_LE(of.size(), 20000u);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace geoprior::embryo
