@@ -1,7 +1,8 @@
 """Keeps the numbers of the pages equal to the published records (docs/file-formats.md).
 
     python3 results/figures.py                        writes what stands between the markers of all pages
-    python3 results/figures.py --check                exit code 1 where a page differs from its source
+    python3 results/figures.py --check                exit code 1 where a page differs from its source,
+                                                      or a citation from docs/references.bib
     python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew
 
 Pages are README.md and docs/**/*.md. A record holds what the pages quote of its run: a new quantity on a page
@@ -12,6 +13,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import citations
 import pages
 import records
 import runfile
@@ -48,7 +50,7 @@ def unshown(texts, published):
 def check(root):
     texts, sources = page_texts(root), pages.read_sources(root)
     found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
-    found += unshown(texts, sources.records)
+    found += unshown(texts, sources.records) + citations.problems(root)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
 

@@ -34,7 +34,7 @@ inline double signed_angle(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 ///                  Segments do not cross, and no point lies inside a segment.
 /// @return          counter-clockwise triangles, in an order that the input alone decides
 /// @throws Error    when two points coincide or two segments cross (names them)
-/// Source: CGAL, 2D triangulations.
+/// Source: CGAL 5.5, 2D Triangulations.
 Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
                                       const std::vector<std::vector<int>>& loops,
                                       const std::vector<Eigen::Vector2i>& segments);
@@ -46,7 +46,7 @@ Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
 ///                  may lie in it. Segments do not cross, and no point lies inside a segment.
 /// @return          counter-clockwise triangles, in an order that the input alone decides
 /// @throws Error    when two points coincide or two segments cross (names them)
-/// Source: CGAL, 2D triangulations.
+/// Source: CGAL 5.5, 2D Triangulations.
 Eigen::MatrixX3i constrained_delaunay(const Eigen::MatrixX2d& points,
                                       const std::vector<Eigen::Vector2i>& segments);
 

@@ -9,7 +9,7 @@ namespace geoprior {
 /// leaves edges far shorter than wanted, and slivers would stay there.
 ///
 /// @param crease_deg  edges at which the surface turns by more are creases
-/// Source: Botsch, Kobbelt 2004; CGAL 5.5, Polygon Mesh Processing.
+/// Source: Botsch and Kobbelt 2004a; CGAL 5.5, Polygon Mesh Processing.
 void remesh(Solid& solid, double edge_length, double crease_deg, int passes);
 
 }  // namespace geoprior

@@ -16,7 +16,7 @@ std::vector<int> faces_with_area(const TriMesh& mesh);
 /// Of the mesh as it is at construction; triangles without area are left out. Numbers are rounded:
 /// what touches within round-off may count or not. Queries may be asked from several threads at
 /// once.
-/// Source: CGAL, 3D fast intersection and distance computation (AABB tree).
+/// Source: CGAL 5.5, 3D fast intersection and distance computation (AABB tree).
 class TriangleTree {
  public:
   explicit TriangleTree(const TriMesh& mesh);

@@ -26,7 +26,7 @@ EllipticIntegrals elliptic_integrals(double modulus);
 /// @param length    of the strip (m), positive
 /// @param distance  of its ends (m), 0 … length
 /// @throws Error    when they are out of range
-/// Source: Love, A Treatise on the Mathematical Theory of Elasticity, art. 263.
+/// Source: Love, A Treatise on the Mathematical Theory of Elasticity, 1927, art. 263.
 double elastica_height(double length, double distance);
 
 /// Two opposite sides of a rectangle in the plane, corner to corner, both the same way.

@@ -71,7 +71,7 @@ inline Eigen::Vector3d upper_in_plane(const Eigen::Matrix3d& matrix, const Eigen
 /// quotients, exact to about 1e-15 of the largest modulus. Both triangles are read.
 ///
 /// Source: the trigonometric solution of the characteristic cubic (Smith 1961) and the order of
-/// work of Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices.
+/// work of Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices, 2014.
 inline SymmetricEigen symmetric_eigen(const Eigen::Matrix3d& matrix) {
   SymmetricEigen result{matrix.diagonal(), Eigen::Matrix3d::Identity()};
   const auto lone = symmetric_eigen_detail::lone_eigenvector(matrix);

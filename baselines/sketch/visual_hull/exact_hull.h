@@ -15,7 +15,7 @@ namespace geoprior::sketch {
 /// @param aligned  of `align_views`: at least two views that are not `photo`
 /// @throws Error   with fewer views; when the intersection is no solid
 /// Source: CGAL 5.5, Polygon Mesh Processing (corefinement, isotropic remeshing after Botsch and
-/// Kobbelt 2004).
+/// Kobbelt 2004a).
 VisualHull exact_hull(const Drawing& aligned, const HullOptions& hull);
 
 }  // namespace geoprior::sketch

@@ -16,7 +16,7 @@ namespace geoprior::sketch {
 ///
 /// The texts of the standards (ANSI/AAMA 292, ASTM D6673) are sold: this follows what pattern
 /// programs publish of them, and no such program has read these files.
-/// Source: Autodesk, DXF reference of release 12; ASTM D6673's table of layers.
+/// Source: Autodesk 1992, DXF reference of release 12; ASTM D6673's table of layers.
 std::string dxf_drawing(const PatternSheet& sheet);
 
 }  // namespace geoprior::sketch

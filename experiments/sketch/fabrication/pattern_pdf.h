@@ -17,7 +17,7 @@ namespace geoprior::sketch {
 ///
 /// @param pages   at least one (pattern_tiles.h)
 /// @throws Error  without a page, or for a colour that is none (layer_style.h)
-/// Source: Adobe, PDF Reference, version 1.4.
+/// Source: Adobe 2001, PDF Reference, version 1.4.
 std::string pdf_document(const PatternSheet& sheet, std::span<const SheetPage> pages,
                          const LayerStyle& style);
 

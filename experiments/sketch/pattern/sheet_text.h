@@ -17,7 +17,7 @@ std::u32string label_text(std::string_view utf8, std::size_t most);
 /// Width of text set in Helvetica, in units of its size; characters outside ASCII are taken to be
 /// as wide as a capital, those from U+1100 on as wide as high.
 ///
-/// Source: Adobe, font metrics of the 14 standard fonts.
+/// Source: Adobe 1997, font metrics of the 14 standard fonts.
 double helvetica_width(std::u32string_view text);
 
 }  // namespace geoprior::sketch

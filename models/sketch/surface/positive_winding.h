@@ -18,7 +18,7 @@ using PlaneLoop = std::vector<Eigen::Vector2d>;
 /// @return        the region on the left: outer loops counter-clockwise, those of holes clockwise,
 ///                longest extent first, each from its leftmost point on; empty for an empty region
 /// @throws Error  naming a point that is not finite
-/// Source: positive fill rule of polygon clipping; de Berg et al., Computational Geometry,
+/// Source: positive fill rule of polygon clipping; de Berg et al. 2008, Computational Geometry,
 /// chapter 2.
 std::vector<PlaneLoop> positive_winding_border(const std::vector<PlaneLoop>& curves);
 

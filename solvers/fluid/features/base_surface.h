@@ -17,7 +17,7 @@ namespace geoprior::fluid {
 /// @param inside  1 for vertices that move, one per vertex
 /// @return positions; those outside are unchanged. @throws Error when a component has no vertex
 /// that stays, or the system is singular (names a vertex)
-/// Source: Botsch and Kobbelt 2004; thesis 3.3.1 (smooth underlying surface).
+/// Source: Botsch and Kobbelt 2004b; thesis 3.3.1 (smooth underlying surface).
 Eigen::MatrixX3d base_under(const TriMesh& mesh, const std::vector<char>& inside);
 
 /// `base_under`, and where its triangles fold over in the plane across their mean normal (a surface

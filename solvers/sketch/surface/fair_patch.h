@@ -13,7 +13,7 @@ namespace geoprior::sketch {
 /// hexagonal grid of points), and the inner vertices solve L x = 0 with the cotangent Laplacian L
 /// of the surface itself, found by a few solves (sparse Cholesky) from that of the flat layout:
 /// H n = L x / 2 vanishes, the discrete minimal surface of Pinkall and Polthier 1993. The
-/// fourth-order system L M^-1 L x = 0 of Botsch and Kobbelt 2004 needs tangents along the border,
+/// fourth-order system L M^-1 L x = 0 of Botsch and Kobbelt 2004b needs tangents along the border,
 /// which a drawing does not give; with positions alone and Lx = 0 at the border, its solution is
 /// that of L x = 0. On a plane border the patch is plane.
 ///

@@ -21,7 +21,7 @@ void describe(OptionVisitor& v, GridOptions& options);
 /// It needs some 16 points a period of each corrugation: n = 2000 and N = 500 have two to four, and
 /// what its own differences then say of the metric is not that of the surface.
 ///
-/// Source: Theillière's corrugation process on the sequence of Borrelli et al. 2012.
+/// Source: the corrugation process of Theillière 2022 on the sequence of Borrelli et al. 2012.
 /// @throws Error  while running, naming corrugation and place where a coefficient is not positive
 std::unique_ptr<Process> make_grid_torus(const TorusInput& input, const GridOptions& options);
 

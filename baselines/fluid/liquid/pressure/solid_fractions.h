@@ -58,7 +58,7 @@ class SolidSampler {
 /// Particles stay half a cell off a solid, so that cells which the solid cuts may look empty: cells
 /// whose centre lies in a solid become liquid (distance -h/2) where liquid is within half a cell.
 /// For distances made of particles; an exact level set needs none of it.
-/// Source: Batty's Fluid3D (2008), extrapolation of phi into solids.
+/// Source: Batty 2008, Fluid3D, extrapolation of phi into solids.
 void extend_into_solids(const SolidFractions& solids, const GridShape& shape,
                         ScalarGrid& liquid_distance);
 
