@@ -29,7 +29,7 @@ double signed_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
 /// Unit normals of the triangles (rows; zero for a degenerate triangle).
 Eigen::MatrixX3d triangle_normals(const TriMesh& mesh);
 
-/// Unit vertex normals, angle weighted (Thürrner and Wüthrich 1998); zero for a vertex without
+/// Unit vertex normals, angle weighted (Thürmer and Wüthrich 1998); zero for a vertex without
 /// triangles.
 Eigen::MatrixX3d vertex_normals(const TriMesh& mesh);
 

@@ -2,7 +2,8 @@
 
 A citation is a surname and a year: `Vaillant et al. 2013`, `Narain, Pfaff and O'Brien 2013`, `Bridson (2015)`,
 `Kavan et al. 2007/2008`, `Lévy, Petitjean, *Title*, 2002`; at a `Source:` comment the title may stand plain. An entry
-with a `shorttitle` is cited by that text: `CGAL 5.5`. Names are compared without case and diacritics.
+with a `shorttitle` is cited by that text: `CGAL 5.5`. Names are compared without case and diacritics. Read are
+comments of C++, texts of the tables of experiments/, and pages.
 """
 
 import re
@@ -15,10 +16,11 @@ ROOMS = ("core", "metrics", "models", "baselines", "solvers", "testbed", "experi
          "benchmarks")
 REQUIRED = ("author", "title", "year")
 
-# Words with a capital that stand before a year or in a list before a surname, and are no surnames.
+# Words with a capital that stand before a year or in a list before a surname, and are no surnames. CIE 1976 names
+# colours.
 NO_SURNAMES = set("""January February March April May June July August September October November December
     Debian Ubuntu Windows Figure Table Section Chapter Equation Version Release Thesis Page Line Day Seed
-    About After Before By From In Of Since The Until""".split())
+    CIE About After Before By From In Of Since The Until""".split())
 
 ENTRY = re.compile(r"@(\w+)\{([^\s,{}]+),")
 FIELD = re.compile(r"  (\w+) = \{(.*)\},")
@@ -32,8 +34,9 @@ IN_TEXT = re.compile(rf"{AUTHORS}(?:,{GAP}(?:\*[^*|;]+\*|\"[^\"|;]+\"),)?{GAP}\(
 AT_SOURCE = re.compile(rf"{AUTHORS}(?:,{GAP}[^;()]+?)??,?{GAP}\(?{YEAR}")
 LISTED = re.compile(r"^- (?P<authors>[A-Z]\.[^*\n]+)\. \*(?P<title>[^*\n]+?)\.?\* [^\n]*?(?P<year>\d{4})\.$",
                     re.MULTILINE)
-SOURCE = re.compile(r"//.*?\b(Sources?\b[^:;.]{0,40}:.*)")
-COMMENT = re.compile(r"\s*//(?:/<?)?(?![/<])\s*([^\s@].*)")
+COMMENT = re.compile(r"(?P<code>.*?)//(?:/<?)?(?![/<])\s*(?P<text>.*)")
+SOURCE = re.compile(r"\bSources?\b[^:;.]{0,40}:")
+STRING = re.compile(r'"((?:[^"\\\n]|\\.)+)"')
 FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 
 
@@ -130,16 +133,23 @@ def entry_mistakes(entries):
 # Texts that cite
 
 
-def source_comments(text):
-    """(line, comment) of every `Source:` in the comments of a C++ file, without the marks of comments."""
-    lines, out, open_ = text.split("\n"), [], False
-    for number, line in enumerate(lines, 1):
-        source, comment = SOURCE.search(line), COMMENT.fullmatch(line)
-        if source:
-            out.append((number, source[1]))
-        elif open_ and comment:
-            out[-1] = (out[-1][0], f"{out[-1][1]}\n{comment[1]}")
-        open_ = bool(source or (open_ and comment))
+def comments(text):
+    """(line, comment) of all comments of a C++ file, without their marks. Empty lines, code, `@param` and `Source:`
+    begin another one."""
+    out, open_ = [], False
+    for number, line in enumerate(text.split("\n"), 1):
+        comment = COMMENT.fullmatch(line)
+        words = comment["text"] if comment else ""
+        source = SOURCE.search(words)
+        before, after = (words[:source.start()], words[source.start():]) if source else (words, "")
+        if before.strip():
+            if open_ and not comment["code"].strip() and not before.startswith("@"):
+                out[-1] = (out[-1][0], f"{out[-1][1]}\n{before}")
+            else:
+                out.append((number, before))
+        if after:
+            out.append((number, after))
+        open_ = bool(words)
     return out
 
 
@@ -172,13 +182,23 @@ def page_citations(name, text):
 
 
 def citing_texts(root):
-    """(file, line, text) of the comments `Source:` and of the pages."""
+    """(file, line, text) of comments, of the texts of the experiments' tables, and of pages."""
     sources = [p for room in ROOMS for ending in ("h", "cpp") for p in (root / room).rglob(f"*.{ending}")]
     for path in sorted(sources):
-        for line, comment in source_comments(path.read_text(encoding="utf-8")):
-            yield str(path.relative_to(root)), line, comment
+        name, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
+        for line, comment in comments(text):
+            yield name, line, comment
+        for literal in STRING.finditer(text) if name.startswith("experiments/") else ():
+            yield name, text.count("\n", 0, literal.start()) + 1, literal[1]
     for path in sorted([*root.glob("README.md"), *root.glob("docs/**/*.md")]):
         yield str(path.relative_to(root)), 1, path.read_text(encoding="utf-8")
+
+
+def citations_of(name, line, text):
+    """Citations of one of the `citing_texts`."""
+    if name.endswith(".md"):
+        return page_citations(name, text)
+    return citations_in(name, line, text, AT_SOURCE if SOURCE.match(text) else IN_TEXT)
 
 
 # One against the other
@@ -191,10 +211,12 @@ def cited_entry(citation, entries):
         return None, f"no entry of {BIBLIOGRAPHY} for '{citation.text}'"
     if citation.title:
         named = [e for e in found if plain(e.fields.get("title", "")) == plain(citation.title)]
-        return (named[0], None) if named else (None, f"no entry of {BIBLIOGRAPHY} has the title '{citation.title}'")
-    named = [e for e in found if e.key.endswith(citation.year + citation.letter)]
+        mistake = f"no entry of {BIBLIOGRAPHY} has the title '{citation.title}'"
+    else:
+        named = [e for e in found if e.key.endswith(citation.year + citation.letter)]
+        mistake = f"'{citation.text}' may be {', '.join(e.key for e in found)}"
     if not named:
-        return None, f"'{citation.text}' may be {', '.join(e.key for e in found)}"
+        return None, mistake
     missing = [n for n in citation.surnames if n not in named[0].surnames()]
     if missing and not named[0].open_ended():
         return None, f"'{citation.text}': '{missing[0]}' is no author of {named[0].key}"
@@ -210,8 +232,7 @@ def problems(root):
     out += entry_mistakes(entries)
     cited = set()
     for name, line, text in citing_texts(Path(root)):
-        page = name.endswith(".md")
-        for citation in page_citations(name, text) if page else citations_in(name, line, text, AT_SOURCE):
+        for citation in citations_of(name, line, text):
             entry, mistake = cited_entry(citation, entries)
             cited.add(entry.key if entry else None)
             out += [f"{citation.where}: {mistake}"] if mistake else []

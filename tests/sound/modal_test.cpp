@@ -63,7 +63,7 @@ void expect_second_order(const std::string& name, const Eigen::VectorXd& coarse,
 constexpr double kSide = 0.1;
 
 // NAFEMS FV12 (R0015) gives 1.622, 2.360 and 2.922 Hz for a = 10 m, h = 0.05 m, E = 200 GPa, rho =
-// 8000 kg/m^3. Barton 1951 and Leissa 1973 have 13.49, 19.79, 24.43, 35.02 free and 3.492, 8.525,
+// 8000 kg/m^3. Barton 1951 and Leissa 1973a have 13.49, 19.79, 24.43, 35.02 free and 3.492, 8.525,
 // 21.43, 27.33, 31.11, 54.44 clamped at one side: Ritz values in beam functions, so upper bounds,
 // up to 1 % above ours.
 TEST(PlateRitz, AgreesWithPublishedPlates) {
@@ -249,8 +249,8 @@ TEST(Modes, CylindricalPanelHasTheFrequenciesOfKoitersShell) {
   EXPECT_LT(largest_error(found(20), strongly), 0.01);
 }
 
-// Held along the border as a shallow shell on shear diaphragms (Donnell; Leissa, Vibration of
-// Shells, 1973): rho_s omega^2 = D k^4 + E h kappa^2 (k_m / k)^4, k_m along the rulings. The
+// Held along the border as a shallow shell on shear diaphragms (Donnell; Leissa 1973b,
+// Vibration of Shells): rho_s omega^2 = D k^4 + E h kappa^2 (k_m / k)^4, k_m along the rulings. The
 // shell's own theory differs by (kappa / k)^2.
 TEST(Modes, CurvedFacetIsStiffenedAsDonnellSays) {
   const PaperMaterial material;
@@ -324,7 +324,7 @@ TEST(Modes, LeaveOutTheSwingOfASheetHungAlongALine) {
     for (const int v : {a, b})
       for (int c = 0; c < 3; ++c) supports.holds.push_back({v, Eigen::Vector3d::Unit(c)});
   }
-  // Plate with one side simply supported, three free: 6.648 (Leissa 1973, SFFF).
+  // Plate with one side simply supported, three free: 6.648 (Leissa 1973a, SFFF).
   const Eigen::VectorXd found = eigenmodes({}, state, supports, lowest(3)).frequency;
   EXPECT_NEAR(parameters(found, {}, 0.03)[0], 6.648, 0.1);
 }

@@ -9,7 +9,7 @@
 
 namespace geoprior::details {
 
-/// Unit normals of the vertices of a surface, weighted by angle (Thürrner and Wüthrich 1998). In
+/// Unit normals of the vertices of a surface, weighted by angle (Thürmer and Wüthrich 1998). In
 /// parallel.
 std::vector<Eigen::Vector3d> smooth_normals(const SurfaceTopology& surface,
                                             std::span<const Eigen::Vector3d> x);
