@@ -408,6 +408,18 @@ void add_embryo(std::map<std::string, NamedFile>& files) {
       scene + "additions = [\"more.ttl\"]\n",
       {"more.ttl"},
       "development"};
+  files["embryo queries"] = {
+      [=](const fs::path& folder, bool changed) {
+        mine(folder);
+        for (int q = 1; q <= 8; ++q)
+          write_text(folder / "asked" / ("q" + std::to_string(q) + ".rq"),
+                     "PREFIX e: <urn:geoprior:embryo#>\nSELECT ?x WHERE { ?x "
+                     "a e:" +
+                         std::string(changed ? "Disease" : "TemporalEntity") + " }\n");
+      },
+      scene + "queries = \"asked\"\n",
+      {"asked/q1.rq"},
+      "sparql"};
   files["embryo expected"] = {
       [=](const fs::path& folder, bool changed) {
         mine(folder);
