@@ -361,40 +361,44 @@ const std::string kEmbryoRules =
     "absent(E) :- selected(D), disables(D, P), actsOn(P, E), disables(D, E).\n"
     "inactive(P) :- selected(D), disables(D, P).\n";
 
+const std::string kEmbryoScene =
+    "ontology = \"mine.ttl\"\nrules = \"mine.rules\"\nparameter_set = \"Slow\"\ndays = [15, 19]\n";
+
+void write_ontology(const fs::path& folder, bool changed) {
+  std::string text = embryo::test::small_ontology();
+  const std::string radii = "e:radii (0.2 0.2 0.4)";
+  if (changed) text.replace(text.find(radii), radii.size(), "e:radii (0.2 0.2 0.5)");
+  write_text(folder / "mine.ttl", text);
+}
+
+/// What the scene names.
+void write_embryo(const fs::path& folder) {
+  write_ontology(folder, false);
+  write_text(folder / "mine.rules", kEmbryoRules);
+}
+
 void add_embryo(std::map<std::string, NamedFile>& files) {
-  const auto ontology = writes("mine.ttl", [](bool changed) {
-    std::string text = embryo::test::small_ontology();
-    const std::string radii = "e:radii (0.2 0.2 0.4)";
-    return changed ? text.replace(text.find(radii), radii.size(), "e:radii (0.2 0.2 0.5)") : text;
-  });
-  const auto mine = [=](const fs::path& folder) {
-    ontology(folder, false);
-    write_text(folder / "mine.rules", kEmbryoRules);
-  };
-  const std::string scene =
-      "ontology = \"mine.ttl\"\nrules = \"mine.rules\"\nparameter_set = \"Slow\"\ndays = [15, "
-      "19]\n";
-  files["embryo ontology"] = {[=](const fs::path& folder, bool changed) {
-                                mine(folder);
-                                ontology(folder, changed);
+  files["embryo ontology"] = {[](const fs::path& folder, bool changed) {
+                                write_embryo(folder);
+                                write_ontology(folder, changed);
                               },
-                              scene,
+                              kEmbryoScene,
                               {"mine.ttl"},
                               "development"};
-  files["embryo rules"] = {[=](const fs::path& folder, bool changed) {
-                             mine(folder);
+  files["embryo rules"] = {[](const fs::path& folder, bool changed) {
+                             write_embryo(folder);
                              if (changed)
                                write_text(folder / "mine.rules",
                                           kEmbryoRules +
                                               "absent(E) :- type(E, e:EmbryologicalEntity), "
                                               "mirrorOf(E, _).\n");
                            },
-                           scene,
+                           kEmbryoScene,
                            {"mine.rules"},
                            "development"};
   files["embryo additions"] = {
-      [=](const fs::path& folder, bool changed) {
-        mine(folder);
+      [](const fs::path& folder, bool changed) {
+        write_embryo(folder);
         write_text(folder / "more.ttl",
                    std::string("@prefix e: <urn:geoprior:embryo#> .\n"
                                "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
@@ -405,28 +409,31 @@ void add_embryo(std::map<std::string, NamedFile>& files) {
                                "1) ; e:up (1 0 0) ; e:radii (0.1 0.1 ") +
                        (changed ? "0.2" : "0.3") + ") ; e:unit \"mm\" ; e:source e:Drawn ] .\n");
       },
-      scene + "additions = [\"more.ttl\"]\n",
+      kEmbryoScene + "additions = [\"more.ttl\"]\n",
       {"more.ttl"},
       "development"};
+}
+
+void add_embryo_questions(std::map<std::string, NamedFile>& files) {
   files["embryo queries"] = {
-      [=](const fs::path& folder, bool changed) {
-        mine(folder);
+      [](const fs::path& folder, bool changed) {
+        write_embryo(folder);
         for (int q = 1; q <= 8; ++q)
           write_text(folder / "asked" / ("q" + std::to_string(q) + ".rq"),
                      "PREFIX e: <urn:geoprior:embryo#>\nSELECT ?x WHERE { ?x "
                      "a e:" +
                          std::string(changed ? "Disease" : "TemporalEntity") + " }\n");
       },
-      scene + "queries = \"asked\"\n",
+      kEmbryoScene + "queries = \"asked\"\n",
       {"asked/q1.rq"},
       "sparql"};
   files["embryo expected"] = {
-      [=](const fs::path& folder, bool changed) {
-        mine(folder);
+      [](const fs::path& folder, bool changed) {
+        write_embryo(folder);
         write_text(folder / "mine.toml", std::string("[Horseshoe]\n") +
                                              (changed ? "absnt" : "absent") + " = [\"Kidney\"]\n");
       },
-      scene + "disease = \"Horseshoe\"\nexpected = \"mine.toml\"\n",
+      kEmbryoScene + "disease = \"Horseshoe\"\nexpected = \"mine.toml\"\n",
       {"mine.toml"},
       "development",
       {},
@@ -446,6 +453,7 @@ const std::map<std::string, NamedFile>& named_files() {
     add_assembly(made);
     add_grammar(made);
     add_embryo(made);
+    add_embryo_questions(made);
     return made;
   }();
   return files;
