@@ -20,9 +20,7 @@ using small_body::add_duct;
 using small_body::add_ovoid;
 using small_body::add_process;
 
-const Shape& shape_at(const DayState& state, int structure) {
-  return find_state(state, structure)->shape;
-}
+Shape shape_at(const DayState& state, int structure) { return find_state(state, structure)->shape; }
 
 /// Left and right kidneys that rise, grow and turn, a bladder, ureters, and a landmark.
 struct SmallSystem {
@@ -79,7 +77,7 @@ TEST(DevelopmentState, GrowthBetweenTwoKeysIsLinearInTheLogarithm) {
   add_ovoid(ontology, one, 3, {0, 0, 0}, {4e-4, 2e-4, 3e-4});
   const Development development(ontology, small_body::healthy(ontology));
   for (const double u : {0.0, 0.3, 0.5, 1.0}) {
-    const Shape& shape = shape_at(development.at(29 + 10 * u), one);
+    const Shape shape = shape_at(development.at(29 + 10 * u), one);
     EXPECT_NEAR(shape.radii.x(), 1e-4 * std::pow(4, u), 1e-17);
     EXPECT_NEAR(shape.radii.y(), 2e-4, 1e-18);
   }
@@ -203,7 +201,7 @@ TEST(DevelopmentState, DuctsEndOnTheirAnchorsWhereverTheseAre) {
     const Development development(system.ontology, effects);
     for (double day = 28; day <= 42; day += 0.37) {
       const DayState state = development.at(day);
-      const Shape& ureter = shape_at(state, system.left_ureter);
+      const Shape ureter = shape_at(state, system.left_ureter);
       ASSERT_EQ(ureter.points.size(), 4U);
       const double w = MonotoneCurve({29, 32, 35, 39}, Eigen::Vector4d(-0.3, -0.25, -0.2, -0.15),
                                      Interpolation::monotone, Ends::rest)
@@ -259,7 +257,7 @@ TEST(DevelopmentState, TheRightSideIsTheMirrorImageOfTheLeft) {
   const Eigen::DiagonalMatrix<double, 3> mirror(-1, 1, 1);
   for (double day = 28; day <= 42; day += 0.7) {
     const DayState state = development.at(day);
-    const Shape &left = shape_at(state, system.left), &right = shape_at(state, system.right);
+    const Shape left = shape_at(state, system.left), right = shape_at(state, system.right);
     EXPECT_EQ(right.center, mirror * left.center);
     EXPECT_EQ(right.radii, left.radii);
     EXPECT_LT((right.axes.col(2) - mirror * left.axes.col(2)).norm(), 1e-15);
