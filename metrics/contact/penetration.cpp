@@ -3,13 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <numeric>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/geometry/topology.h"
 #include "core/geometry/triangle_tree.h"
 
 namespace geoprior {
@@ -75,28 +74,6 @@ void require_finite_places(const TriMesh& mesh) {
       throw Error("a coordinate is not finite", "vertex " + std::to_string(v));
 }
 
-/// Vertices at the other ends of a vertex's edges, each as often as triangles have it.
-class VertexNeighbours {
- public:
-  explicit VertexNeighbours(const TriMesh& mesh) : begin_(mesh.V.rows() + 1, 0) {
-    for (const auto& triangle : mesh.F.rowwise())
-      for (const int v : triangle) begin_[v + 1] += 2;
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    list_.resize(begin_.back());
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for (const auto& triangle : mesh.F.rowwise()) {
-      for (int k = 0; k < 3; ++k)
-        for (const int step : {1, 2}) list_[next[triangle[k]]++] = triangle[(k + step) % 3];
-    }
-  }
-  [[nodiscard]] std::span<const int> of(int v) const {
-    return std::span(list_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
-  }
-
- private:
-  std::vector<int> begin_, list_;
-};
-
 /// Finds the deepest of the points at which a surface is looked at.
 ///
 /// A depth changes by no more than the way that one goes: from a point far outside, its whole
@@ -127,7 +104,7 @@ class DeepestPoint {
 
   /// From neighbour to neighbour, so that a vertex is bounded by those before it.
   void look_at_vertices() {
-    const VertexNeighbours neighbours(mesh_);
+    const VertexGraph neighbours = one_rings(mesh_.F, mesh_.vertex_count());
     std::vector<bool> is_known(mesh_.V.rows(), false);
     std::vector<int> queue;
     queue.reserve(mesh_.V.rows());

@@ -138,11 +138,11 @@ std::shared_ptr<EmbryoScene> load_embryo_scene(const EmbryoSceneOptions& options
   scene->options = options;
   scene->files = read_source_files(options, folder);
   const Graph own = read_graph_of(scene->files);
-  const std::string& where = scene->files.triples.front().where;
   scene->violations = violations(own);
   require_model(own, scene->violations,
                 options.count_mistakes ? Mistakes::counted : Mistakes::refused);
-  scene->ontology = make_ontology(own, {options.parameter_set, 0}, where);
+  scene->ontology =
+      make_ontology(own, {options.parameter_set, 0}, scene->files.triples.front().where);
   scene->graph = options.copies == 1 ? own : replicated(own, options.copies);
   scene->disease = disease_of(options, scene->ontology);
   add_consequences(*scene);

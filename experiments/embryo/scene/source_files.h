@@ -18,8 +18,7 @@ struct SourceFiles {
   };
   std::vector<Triples> triples;  ///< the ontology, then the additions
   std::string rules, rules_where;
-  std::vector<std::string>
-      queries;  ///< of the viewer as SPARQL, the first at place 0; none where no folder is named
+  std::vector<std::string> queries;  ///< q1.rq, q2.rq, … as SPARQL; none where no folder is named
   std::vector<std::filesystem::path> paths;  ///< of all that was read
 };
 

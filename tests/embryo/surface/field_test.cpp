@@ -140,11 +140,16 @@ TEST(EmbryoField, SupportsReachWhereTheSolidEnds) {
 /// Within k of the bound the slope falls from 1 to 0; the largest loss, k/4, is at the bound.
 TEST(EmbryoField, SmoothMinimumIsExactAwayAndContinuouslyDifferentiable) {
   EXPECT_EQ(smooth_minimum(0.5, 1, 0.5), 0.5);
+  EXPECT_EQ(smooth_minimum(1, 2, 0.5), 1);
+  EXPECT_EQ(smooth_minimum(1, 1.1, 0), 1);
+  EXPECT_DOUBLE_EQ(smooth_minimum(1, 1, 0.5), 1 - 0.125);
   EXPECT_EQ(smooth_minimum(1.5, 1, 0.5), 1);
   EXPECT_EQ(smooth_minimum(2, 2, 0.4), 1.9);
   EXPECT_EQ(smooth_minimum(1.2, 1, 0), 1);
   EXPECT_EQ(smooth_maximum(2, 2, 0.4), 2.1);
   const double h = 1e-6;
+  // One-sided slopes at the end of the blend: both 1.
+  EXPECT_NEAR((smooth_minimum(1.5 + h, 2, 0.5) - smooth_minimum(1.5, 2, 0.5)) / h, 1, 1e-5);
   for (double value = 0; value < 2; value += 0.05) {
     EXPECT_LE(smooth_minimum(value, 1, 0.5), 1);
     const double at = smooth_minimum(value, 1, 0.5);
