@@ -18,6 +18,7 @@ from expressions import ExpressionError
 from runfile import RunFileError
 from records import Record, read_records
 from summary import claim_list, table, timing_table
+from wording import all_told, outcome_words
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
@@ -61,8 +62,8 @@ class Marker:
 def figure_index(records):
     rows = []
     for record in records.values():
-        verdict = f"{record.held()} of {len(record.claims)} claims hold" if record.claims else "no claims"
-        rows.append([f"`{record.experiment_id}`", record.figure or "–", record.sizes, verdict,
+        rows.append([f"`{record.experiment_id}`", record.figure or "–", record.sizes,
+                     outcome_words(record.claims),
                      f"`{record.content_sha256[:12]}`", f"`{record.commit[:12]}`"])
     return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
 
@@ -73,41 +74,35 @@ def times_lines(record, case):
 
 
 def measured(claims):
-    """`0.0384 <= 0.04 (10 of 10 seeds)`, of the first claim that falls short, or the first; and in how many
-    cases one and the same claim holds."""
+    """`0.0384 <= 0.04 (10 of 10 seeds)`, of the first claim that falls short, or the first; and what one and the
+    same claim comes to in its cases."""
     shown = next((c for c in claims if not c.holds), claims[0])
     numbers = shown.detail.rpartition(": ")[2]
-    seeds = re.match(r"\d+ of \d+ seeds", shown.detail)
-    held = sum(c.holds for c in claims)
-    verdict = "yes" if held == len(claims) else "**no**"
-    cases = f", {held} of {len(claims)} cases" if len(claims) > 1 else ""
-    return [f"`{numbers}`" + (f" ({seeds[0]})" if seeds else ""), verdict + cases]
+    seeds = re.match(r"\d+ of \d+ seeds?", shown.detail)
+    verdict = outcome_words(claims)
+    return [f"`{numbers}`" + (f" ({seeds[0]})" if seeds else ""), verdict if all_told(claims) else f"**{verdict}**"]
 
 
 def headline(record):
-    """Title, command and verdict, and a small table of claims: first of all those that fall short, then those
-    whose null fails them, then the others."""
+    """Title, command and verdict, and a small table of claims: first of all those that fall short or are not told
+    apart somewhere, then those whose null fails them, then the others."""
     by_text = {}
     for claim in record.claims:
         by_text.setdefault(claim.text, []).append(claim)
-    short = [text for text, claims in by_text.items() if not all(c.holds for c in claims)]
+    short = [text for text, claims in by_text.items() if not all_told(claims)]
     rank = {text: (text not in short, claims[0].null_verdict != "discriminates") for text, claims in by_text.items()}
     chosen = sorted(by_text, key=rank.get)[:max(MOST_HEADLINES, len(short))]
     rows = [[text, *measured(claims)] for text, claims in by_text.items() if text in chosen]
-    verdict = f"{record.held()} of {len(record.claims)} claims hold" if rows else "no claims"
-    return ["", f"*{record.title}.* `{record.command}`: {verdict}.", "",
-            *(table(["claim", "measured", "holds"], rows) if rows else []), ""]
+    return ["", f"*{record.title}.* `{record.command}`: {outcome_words(record.claims)}.", "",
+            *(table(["claim", "measured", "comes to"], rows) if rows else []), ""]
 
 
 def caption(record):
     """Title, command and verdict, as they stand below a picture."""
-    if not record.claims:
-        verdict = "no claims"
-    elif record.held() == len(record.claims):
-        verdict = f"{record.held()} of {len(record.claims)} claims hold"
-    else:
-        missed = list(dict.fromkeys(c.text for c in record.claims if not c.holds))
-        verdict = f"{record.held()} of {len(record.claims)} claims hold. Falls short: " + "; ".join(missed)
+    verdict = outcome_words(record.claims)
+    for outcome in ("falls short", "not told apart"):
+        missed = list(dict.fromkeys(c.text for c in record.claims if c.outcome == outcome))
+        verdict += f". {outcome.capitalize()}: {'; '.join(missed)}" if missed else ""
     return ["", f"*{record.title}.* `{record.command}`: {verdict}.", ""]
 
 

@@ -11,7 +11,7 @@ import records
 import report_parts as parts
 import runfile
 from report_html import MOST_ROWS, details, escape, left_out, page, table
-from wording import display_name, interval, number, unit_symbol, with_unit
+from wording import all_told, display_name, interval, number, outcome_words, unit_symbol, with_unit
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 MOST_OPEN_CASES = 4  # of an experiment; the times of further ones are folded
@@ -20,8 +20,8 @@ MOST_OPEN_CASES = 4  # of an experiment; the times of further ones are folded
 def verdict(record):
     if not record.claims:
         return "no claims"
-    mood = "good" if record.held() == len(record.claims) else "bad"
-    return f'<span class="badge {mood}">{record.held()} of {len(record.claims)} claims hold</span>'
+    mood = "good" if all_told(record.claims) else "bad"
+    return f'<span class="badge {mood}">{outcome_words(record.claims)}</span>'
 
 
 def contents(published):
@@ -118,12 +118,12 @@ def build(root):
     if not published:
         raise runfile.RunFileError(f"{records.published_folder(root)}: no published records")
     sections = [section_of_file(records.record_path(root, name), record) for name, record in published.items()]
-    held, total = (sum(counts) for counts in zip(*((r.held(), len(r.claims)) for r in published.values())))
+    claims_of_all = [claim for record in published.values() for claim in record.claims]
     note = ('<p class="note">Full runs, as their records in <code>results/published</code> have them. A claim that '
             "falls short is a finding, explained on the method's page in <code>docs/methods</code>. Times compare "
             "within a run: the machines are shared.</p>")
     return page("geoprior: published numbers", "\n".join([
-        f"<h1>Published numbers: {held} of {total} claims hold, {len(published)} experiments</h1>", note,
+        f"<h1>Published numbers of {len(published)} experiments: {outcome_words(claims_of_all)}</h1>", note,
         contents(list(published.values())), left_out(len(published) - MOST_ROWS, "experiments"), *sections]))
 
 

@@ -109,7 +109,10 @@ def published_claim(claim):
     """Verdict, numbers, and what its null says of it: those of a row of run.h5 that have a value."""
     beside = {"left": rounded(claim.left, 6), "right": rounded(claim.right, 6), "null": claim.null,
               "null_verdict": claim.null_verdict, "null_detail": claim.null_detail,
-              "passed_too": claim.passed_too}
+              "passed_too": claim.passed_too, "variant": claim.variant, "nearest": claim.nearest,
+              "excepted": claim.excepted}
+    if math.isfinite(claim.least):
+        beside |= {"input": claim.input, "graded": claim.graded, "least": claim.least}
     return {"holds": claim.holds, "case": claim.case, "text": claim.text, "detail": claim.detail,
             **{name: value for name, value in beside.items() if value not in ("", None)}}
 
@@ -193,9 +196,6 @@ class Record:
     ratios: dict
     units: dict[str, str]
     values: dict
-
-    def held(self):
-        return sum(claim.holds for claim in self.claims)
 
     def timing_rows(self, case):
         """The rows of the timing table of a case, as `tables.timing_rows` gives them of a run."""

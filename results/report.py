@@ -10,7 +10,7 @@ from pathlib import Path
 import report_parts as parts
 import runfile
 from report_html import MOST_RUNS, escape, left_out, page
-from wording import display_name
+from wording import all_told, display_name, outcome_words
 
 
 def run_section(run, anchor, level_one):
@@ -27,10 +27,8 @@ def run_section(run, anchor, level_one):
 def contents(runs):
     rows = []
     for i, run in enumerate(runs):
-        held = sum(c.holds for c in run.claims)
-        mood = "good" if held == len(run.claims) else "bad"
-        verdict = f'<span class="badge {mood}">{held} of {len(run.claims)} claims hold</span>' \
-            if run.claims else ""
+        mood = "good" if all_told(run.claims) else "bad"
+        verdict = f'<span class="badge {mood}">{outcome_words(run.claims)}</span>' if run.claims else ""
         figure = f", Figure {escape(run.figure)}" if run.figure else ""
         rows.append(f'<li><a href="#run-{i}">{escape(run.title)}</a>{figure} {verdict}</li>')
     return f"<nav><h2>Contents</h2><ol>{''.join(rows)}</ol></nav>"

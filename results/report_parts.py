@@ -11,7 +11,7 @@ import spectrogram
 from report_html import (MOST_CASES, MOST_LONG_CHARACTERS, MOST_ROWS, MOST_SOUND_BYTES, MOST_SOUNDS, details,
                          escape, image_figure, left_out, player, png_figure, svg_figure, table)
 from tables import event_counts, failures, metric_rows, phase_rows, timing_rows
-from wording import beside, display_name, interval, labelled, number, unit_symbol, with_unit
+from wording import beside, display_name, interval, labelled, number, outcome_words, unit_symbol, with_unit
 
 
 def meta_line(run):
@@ -42,16 +42,17 @@ def case_heading(run, case):
 def claims(run):
     if not run.claims:
         return ""
-    held = sum(c.holds for c in run.claims)
+    badges = {"holds": '<span class="badge good">✓ holds</span>',
+              "falls short": '<span class="badge bad">✗ falls short</span>',
+              "not told apart": '<span class="badge bad">≈ not told apart</span>'}
+    soft = ' <span class="badge">soft</span>'
     items = []
     for claim in run.claims[:MOST_ROWS]:
-        badge = '<span class="badge good">✓ holds</span>' if claim.holds \
-            else '<span class="badge bad">✗ falls short</span>'
         case = f' <span class="note">({escape(claim.case)})</span>' if claim.case and len(run.cases) > 1 else ""
         notes = "".join(f'<br><span class="note">{escape(words)}</span>' for words in beside(claim))
-        items.append(f"<li><div>{badge}</div><div>{escape(claim.text)}{case}<br>"
+        items.append(f"<li><div>{badges[claim.outcome]}{soft if claim.soft else ''}</div><div>{escape(claim.text)}{case}<br>"
                      f"<code>{escape(claim.detail)}</code>{notes}</div></li>")
-    return (f"<h2>Claims: {held} of {len(run.claims)} hold</h2>\n"
+    return (f"<h2>Claims: {outcome_words(run.claims)}</h2>\n"
             f'<ul class="claims">{"".join(items)}</ul>'
             + left_out(len(run.claims) - MOST_ROWS, "claims"))
 

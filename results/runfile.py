@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import os
 import signal
 import sys
@@ -16,7 +17,8 @@ import numpy as np
 
 from wording import printable
 
-SCHEMA_VERSION = 3  # and what came before it
+SCHEMA_VERSION = 4  # and what came before it
+SOFT_BELOW = 0.7  # as kSoftBelow of testbed/runner/journal/run_record.h
 JOURNAL_TAIL = 4096  # more than its last line has
 
 
@@ -116,6 +118,24 @@ class Claim:
     null_verdict: str = ""  # discriminates, void, undecided, exempt, unasked; empty before schema 3
     null_detail: str = ""
     passed_too: str = ""  # further variants that the claim holds for
+    variant: str = ""  # that speaks, of several that the claim is about; empty before schema 4, as all below
+    nearest: str = ""  # of all other variants the one that fails by least
+    excepted: str = ""  # why it need not hold in this case; empty: it must
+    input: str = ""  # variant that does nothing, from which it is graded
+    graded: str = "no"  # by frames or by values
+    least: float = math.nan  # smallest s of input + s (output - input) from which on it holds
+
+    @property
+    def outcome(self):
+        """holds, falls short, or not told apart: its null passes too, or has no value."""
+        if not self.holds:
+            return "falls short"
+        return "holds" if self.null_verdict in ("discriminates", "exempt", "") else "not told apart"
+
+    @property
+    def soft(self):
+        """What does a good part less than the method would pass, too."""
+        return self.least < SOFT_BELOW
 
 
 @dataclass
@@ -223,10 +243,11 @@ def read_case(name, group):
 
 
 def read_claim(row):
-    since_3 = [text(row[name]) for name in ("null", "null_verdict", "null_detail", "passed_too")
-               if name in row.dtype.names]
+    later = ("null", "null_verdict", "null_detail", "passed_too", "variant", "nearest", "excepted", "input", "graded")
+    texts = {name: text(row[name]) for name in later if name in row.dtype.names}
+    least = {"least": float(row["least_grade"])} if "least_grade" in row.dtype.names else {}
     return Claim(text(row["text"]), text(row["case"]), text(row["detail"]), float(row["left"]),
-                 float(row["right"]), bool(row["holds"]), *since_3)
+                 float(row["right"]), bool(row["holds"]), **texts, **least)
 
 
 def read_root(folder, file):

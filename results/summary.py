@@ -10,7 +10,7 @@ import numpy as np
 
 import runfile
 from tables import failures, metric_rows, timing_rows
-from wording import beside, display_name, interval, with_unit
+from wording import beside, display_name, interval, outcome_words, with_unit
 
 
 def table(head, rows):
@@ -24,17 +24,14 @@ def claim_list(run):
     lines = []
     for claim in run.claims:
         case = f" ({claim.case})" if claim.case and len(run.cases) > 1 else ""
-        lines.append(f"- **{'holds' if claim.holds else 'falls short'}**: {claim.text}{case}  ")
+        lines.append(f"- **{claim.outcome}**: {claim.text}{case}  ")
         lines.append(f"  `{claim.detail}`" + "".join(f"; {words}" for words in beside(claim)))
     return lines
 
 
 def claims(run):
-    """The list below a line of how many hold; nothing for a run without claims."""
-    if not run.claims:
-        return []
-    held = sum(c.holds for c in run.claims)
-    return ["", f"## Claims: {held} of {len(run.claims)} hold", "", *claim_list(run)]
+    """The list below a line of what they come to; nothing for a run without claims."""
+    return ["", f"## Claims: {outcome_words(run.claims)}", "", *claim_list(run)] if run.claims else []
 
 
 def metrics_table(case):

@@ -35,8 +35,8 @@ def null_words(claim):
     """What a claim's null says of it; empty for runs that knew no nulls."""
     return {
         "discriminates": f"discriminates: not so with the null {claim.null}: {claim.null_detail}",
-        "void": f"void: its null {claim.null} passes too, or as good as: {claim.null_detail}",
-        "undecided": f"undecided: its null {claim.null} has no value: {claim.null_detail}",
+        "void": f"not told apart: its null {claim.null} passes too, or as good as: {claim.null_detail}",
+        "undecided": f"not told apart: its null {claim.null} has no value: {claim.null_detail}",
         "exempt": "needs no null: a time, or an oracle",
         "unasked": "names no null: nothing says that it can fail",
     }.get(claim.null_verdict, "")
@@ -49,10 +49,44 @@ def slack(claim):
     return f"value over limit {claim.left / claim.right:.3g}"
 
 
+def grade_words(claim):
+    """How much of its method a claim needs; empty where it is not graded."""
+    if math.isnan(claim.least):
+        return ""
+    needs = (f"the input {claim.input} passes" if claim.least == 0 else
+             f"holds from s = {claim.least:.2g} on of {claim.input} + s ({claim.variant or 'its variant'} − {claim.input})")
+    return f"{'soft: ' if claim.soft else ''}{needs}, graded by {claim.graded}"
+
+
 def beside(claim):
-    """All that stands beside a decided claim: slack, null, further variants that pass it."""
+    """All that stands beside a decided claim: why it need not hold, slack, null, grade, which other variants pass
+    it, and which fails by least."""
+    excepted = f"excepted: {claim.excepted}" if claim.excepted else ""
+    nearest = f"{claim.nearest} fails by least" if claim.nearest and claim.nearest != claim.null else ""
     too = f"holds for {claim.passed_too} too" if claim.passed_too else ""
-    return [words for words in (slack(claim), null_words(claim), too) if words]
+    return [words for words in (excepted, slack(claim), null_words(claim), grade_words(claim), nearest, too) if words]
+
+
+OUTCOMES = ("holds", "falls short", "not told apart")
+
+
+def outcome_words(claims):
+    """`holds in 7, falls short in 1, not told apart in 2; 1 soft` of decided claims; their outcome of a single one."""
+    soft = sum(c.soft for c in claims)
+    if len(claims) == 1:
+        return claims[0].outcome + (", excepted" if claims[0].excepted else "") + (", soft" if soft else "")
+    parts = []
+    for outcome in OUTCOMES:
+        of = [c for c in claims if c.outcome == outcome]
+        excepted = sum(bool(c.excepted) for c in of) if outcome != "holds" else 0
+        if of:
+            parts.append(f"{outcome} in {len(of)}" + (f" ({excepted} excepted)" if excepted else ""))
+    return (", ".join(parts) or "no claims") + (f"; {soft} soft" if soft else "")
+
+
+def all_told(claims):
+    """Whether each of them holds, and its null fails."""
+    return all(c.outcome == "holds" for c in claims)
 
 
 def display_name(name):

@@ -239,6 +239,9 @@ struct Topic {
   /// figure's frames lie before it. Absent: unknown for all.
   std::function<std::optional<LastParameter>(const OptionSet&)> last_parameter = {};
   std::vector<MethodEntry> methods;
+  /// Methods that do nothing of what the topic is about, the nearest to its methods first: the
+  /// variant of the first that a file has is the input from which its claims are graded.
+  std::vector<std::string> inputs = {};
   std::vector<MetricGroup> metrics;
   std::vector<DiagnosticEntry> diagnostics;
   /// What is drawn where the experiment file does not say.

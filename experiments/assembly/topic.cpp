@@ -16,6 +16,7 @@ Topic make_topic() {
                                folder, seed);
   };
   topic.methods = methods();
+  topic.inputs = {"random-replacement", "brute-force"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view.direction = {-0.5, -1, 0.6};

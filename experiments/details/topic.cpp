@@ -19,6 +19,7 @@ Topic make_topic() {
     return LastParameter{motion.duration, "s"};
   };
   topic.methods = methods();
+  topic.inputs = {"naive-stretch"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view.direction = {0, 0, 1};

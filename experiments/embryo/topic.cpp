@@ -26,6 +26,7 @@ Topic make_topic() {
     return std::nullopt;
   };
   topic.methods = methods();
+  topic.inputs = {"keyframes"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view.part = recorded::kSurface;

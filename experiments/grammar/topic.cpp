@@ -23,6 +23,7 @@ Topic make_topic() {
     return LastParameter{last, "1"};
   };
   topic.methods = methods();
+  topic.inputs = {"nothing"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view.direction = {-0.5, -1, 0.45};

@@ -35,6 +35,7 @@ Topic make_topic() {
     return LastParameter{scene.duration, "s"};
   };
   topic.methods = methods();
+  topic.inputs = {"adaptive", "dense"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view = paper_view();

@@ -15,6 +15,7 @@ Topic make_topic() {
                              folder, seed);
   };
   topic.methods = methods();
+  topic.inputs = {"visual-hull"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.files = {drawing_keys()};

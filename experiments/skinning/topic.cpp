@@ -35,6 +35,7 @@ Topic make_topic() {
     return last_angle(dynamic_cast<const TypedOptions<SkinningSceneOptions>&>(set).options.motion);
   };
   topic.methods = methods();
+  topic.inputs = {"dual-quaternion", "linear-blend"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.commands = {rig_command()};

@@ -29,6 +29,7 @@ Topic make_topic() {
                             folder, seed);
   };
   topic.methods = methods();
+  topic.inputs = {"clicks"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.commands = {bank_command()};

@@ -19,6 +19,7 @@ Topic make_topic() {
     return LastParameter{static_cast<double>(scene.corrugations.size()), "1"};
   };
   topic.methods = methods();
+  topic.inputs = {"revolution", "single-corrugation"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view.direction = {-0.6, 0, -1};

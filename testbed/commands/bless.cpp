@@ -17,6 +17,7 @@
 #include "testbed/joined.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/judgement/claims.h"
+#include "testbed/runner/judgement/grades.h"
 #include "testbed/runner/judgement/measured_run.h"
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/process/stop.h"
@@ -185,13 +186,17 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   Reference reference = read_reference(file);
   const BlessedRun run = run_without_clock(context, std::move(experiment));
   const std::string size = size_of(run.experiment);
-  const std::vector<ClaimRecord> claims = decide_claims(run.experiment, run.record);
+  RunRecord graded = run.record;
+  graded.claims = decide_claims(run.experiment, run.record);
+  grade_claims(run.experiment, context.topics, run.folder, graded);
+  const std::vector<ClaimRecord>& claims = graded.claims;
   const Gates gates(run.experiment, *run.topic);
   BlessedSet& set = reference[size];
   const ReferenceSet before = std::move(set.values);
   set = {blessing_of(request.reason), content_of(run.record), processor_seconds(run.record),
          bless_values(gated_values(run.experiment, *run.topic, run.record, claims), gates)};
   if (run.experiment.keeps_outcomes) set.outcomes = outcomes_of(run.record, *run.topic);
+  set.claims = bless_claims(claims);
   write_reference(reference, file);
 
   for (const std::string& failure : failures(run.record)) say("  note: " + failure);
@@ -199,6 +204,7 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   for (const std::string& line : difference_lines(changes, kMostLines)) say("  " + line);
   for (const ClaimRecord& claim : claims) {
     if (!claim.holds) say("  note: a claim falls short: " + claim.text + ": " + claim.detail);
+    if (is_soft(claim)) say("  note: " + claim.text + ": " + grade_text(claim));
   }
   say("blessed " + std::to_string(changes.size()) + " values of " + run.experiment.id + " (" +
       size + ") in " + file.string());

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +15,8 @@
 #include "testbed/commands/find.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/runner/judgement/claims.h"
+#include "testbed/runner/judgement/grades.h"
+#include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/reference/diff.h"
@@ -49,8 +52,8 @@ struct Verdict {
     return has_reference && failures.empty() && (mutation_seen || !mutations) &&
            std::none_of(mismatches.begin(), mismatches.end(),
                         [](const Mismatch& mismatch) { return mismatch.fails; }) &&
-           std::all_of(claims.begin(), claims.end(), [&](const ClaimRecord& claim) {
-             return is_sound(claim) && (claim.holds || known_shortfalls.contains(claim.text));
+           unsound(claims).empty() && std::all_of(claims.begin(), claims.end(), [&](const auto& c) {
+             return c.holds || !c.excepted.empty() || known_shortfalls.contains(c.text);
            });
   }
 };
@@ -108,6 +111,40 @@ void add_outcomes(const BlessedRun& run, const Outcomes& blessed, Verdict& verdi
   append(verdict.failures, difference.failures);
 }
 
+/// A grade is looked for again only around the blessed one: one step above it the claim must hold,
+/// two below it must not.
+void check_grades(const CommandContext& context, const BlessedRun& run,
+                  const BlessedClaims& blessed, Verdict& verdict) {
+  Grader grader(run.experiment, context.topics, run.record, run.folder);
+  for (const std::string& in : cases_of(verdict.claims)) {
+    for (const ClaimRecord& claim : verdict.claims) {
+      if (claim.case_name != in) continue;
+      const BlessedClaim* before = find_claim(blessed, claim);
+      if (before == nullptr || before->graded == Graded::not_graded) continue;
+      const int step = static_cast<int>(std::lround(before->least * kGradeSteps));
+      const bool above =
+          grader.holds_at(claim, before->graded, std::min(step + 1, kGradeSteps)) == true;
+      const bool below = step >= 2 && grader.holds_at(claim, before->graded, step - 2) == true;
+      if (above && !below) continue;
+      verdict.failures.push_back("claim '" + claim.text + "', case '" + in + "': its grade is " +
+                                 (below ? "less" : "more") + " than the blessed one, " +
+                                 number_text(before->least));
+    }
+  }
+}
+
+void compare_claims(const CommandContext& context, const BlessedRun& run, const BlessedSet& set,
+                    Verdict& verdict) {
+  if (set.claims.empty() && !verdict.claims.empty()) {
+    verdict.notices.emplace_back("its claims are not blessed yet");
+    return;
+  }
+  for (std::string& line : changed_claims(verdict.claims, set.claims)) {
+    verdict.failures.push_back(std::move(line));
+  }
+  if (verdict.mutations) check_grades(context, run, set.claims, verdict);
+}
+
 Verdict check_one(const CommandContext& context, const std::string& id,
                   const CheckRequest& request) {
   Experiment experiment = load_without_clock(context, id, request.quick);
@@ -141,6 +178,7 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   if (!verdict.notices.empty()) add_moved_values(now, before, gates, verdict);
   verdict.mismatches = compare_with_reference(now, before, gates);
   add_outcomes(run, blessed->second.outcomes, verdict);
+  compare_claims(context, run, blessed->second, verdict);
   return verdict;
 }
 
@@ -163,12 +201,16 @@ void say_verdict(const Verdict& verdict, bool quick) {
   if (verdict.mutations && !verdict.mutation_seen) {
     say("        " + verdict.id + ": no claim notices that a method is replaced by its null");
   }
+  for (const ClaimRecord& claim : unsound(verdict.claims)) {
+    say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text + ": " +
+        null_text(claim));
+  }
   for (const ClaimRecord& claim : verdict.claims) {
-    if (!is_sound(claim)) {
-      say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text +
-          ": " + null_text(claim));
+    if (claim.holds && !claim.excepted.empty()) {
+      say("        notice: " + verdict.id + ", case '" + claim.case_name +
+          "' is excepted, and the claim holds there: " + claim.text);
     }
-    if (claim.holds) continue;
+    if (claim.holds || !claim.excepted.empty()) continue;
     say("        " + verdict.id + ", case '" + claim.case_name +
         "', claim falls short: " + claim.text + ": " + claim.detail);
     if (const auto known = verdict.known_shortfalls.find(claim.text);
@@ -206,6 +248,7 @@ Json verdict_json(const Verdict& verdict) {
                               {"case", claim.case_name},
                               {"detail", claim.detail},
                               {"holds", claim.holds},
+                              {"outcome", text_of(outcome_of(claim))},
                               {"null", text_of(claim.null.verdict)}});
   }
   return json;

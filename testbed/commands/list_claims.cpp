@@ -7,6 +7,7 @@
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/find.h"
+#include "testbed/commands/outcome.h"
 #include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
@@ -46,22 +47,22 @@ std::string slack_text(const std::vector<ClaimRecord>& records) {
 
 std::string verdict_text(const std::vector<ClaimRecord>& records) {
   if (records.empty()) return "-";
-  const auto hold = std::count_if(records.begin(), records.end(),
-                                  [](const ClaimRecord& record) { return record.holds; });
-  std::string text = hold == std::ssize(records) ? "holds" : "falls short";
   // The least that the null says in any case.
   const auto unsound = std::find_if_not(records.begin(), records.end(), is_sound);
   const ClaimRecord& telling = unsound == records.end() ? records.front() : *unsound;
-  return text + ", " + text_of(telling.null.verdict);
+  return claim_count_text(records) + ", " + text_of(telling.null.verdict);
 }
 
 Json claim_json(const ClaimSpec& claim, const std::vector<ClaimRecord>& records) {
-  Json json{{"text", claim.text}, {"metric", claim.metric}, {"variant", claim.variant}};
+  Json json{{"text", claim.text}, {"metric", claim.metric}};
+  if (claim.variants.empty()) json["variant"] = claim.variant;
+  if (!claim.variants.empty()) json["variants"] = claim.variants;
   if (claim.null) json["null"] = *claim.null;
   json["cases"] = Json::array();
   for (const ClaimRecord& record : records) {
     json["cases"].push_back({{"case", record.case_name},
                              {"holds", record.holds},
+                             {"outcome", text_of(outcome_of(record))},
                              {"null", text_of(record.null.verdict)}});
     if (const auto value = slack(record)) json["cases"].back()["value_over_limit"] = *value;
   }
@@ -78,7 +79,10 @@ int list_claims_command(const CommandContext& context) {
     std::vector<std::vector<std::string>> rows{
         {"claim", "metric", "null", "verdict", "value / limit"}};
     Json claims = Json::array();
+    std::string before;
     for (const ClaimSpec& claim : experiment.claims) {
+      if (claim.text == before) continue;  // another variant of the same claim
+      before = claim.text;
       const std::vector<ClaimRecord> records = decided(claim, run);
       rows.push_back({claim.text, claim.metric, claim.null.value_or("-"), verdict_text(records),
                       slack_text(records)});

@@ -6,6 +6,7 @@
 #include "testbed/commands/find.h"
 #include "testbed/commands/outcome.h"
 #include "testbed/commands/pictures.h"
+#include "testbed/runner/judgement/grades.h"
 #include "testbed/runner/judgement/measured_run.h"
 #include "testbed/runner/process/stop.h"
 
@@ -52,6 +53,7 @@ int measure_command(const CommandContext& context, const MeasureRequest& request
     // Nothing is written yet.
     const LeaveAtOnce section([] { say("stopped: nothing was written"); });
     measured = measure_again(run, context.topics);
+    grade_claims(measured->experiment, context.topics, from, measured->record);
   }
   const fs::path folder = write_measured_run(
       *measured, run, request.out ? std::optional<fs::path>(*request.out) : std::nullopt);

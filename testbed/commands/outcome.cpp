@@ -132,21 +132,32 @@ Json variant_json(const VariantRecord& variant) {
 
 }  // namespace
 
-ClaimCount count_claims(const RunRecord& record) {
-  ClaimCount count;
-  for (const ClaimRecord& claim : record.claims) ++(claim.holds ? count.hold : count.fall_short);
-  return count;
+std::string claim_count_text(const std::vector<ClaimRecord>& claims) {
+  if (claims.empty()) return "none";
+  const auto count = [&](ClaimOutcome outcome) {
+    return std::count_if(claims.begin(), claims.end(),
+                         [&](const ClaimRecord& claim) { return outcome_of(claim) == outcome; });
+  };
+  std::string text;
+  for (const ClaimOutcome outcome :
+       {ClaimOutcome::holds, ClaimOutcome::falls_short, ClaimOutcome::not_told_apart}) {
+    if (count(outcome) == 0) continue;
+    text += (text.empty() ? "" : ", ") + text_of(outcome) + " in " + std::to_string(count(outcome));
+    const auto excepted = std::count_if(claims.begin(), claims.end(), [&](const auto& claim) {
+      return outcome_of(claim) == outcome && !claim.excepted.empty();
+    });
+    if (excepted == 0 || outcome == ClaimOutcome::holds) continue;
+    text += " (" + std::to_string(excepted) + " excepted)";
+  }
+  const auto soft = std::count_if(claims.begin(), claims.end(), is_soft);
+  return soft == 0 ? text : text + "; " + std::to_string(soft) + " soft";
 }
 
-std::string claim_count_text(const ClaimCount& count) {
-  if (count.hold + count.fall_short == 0) return "none";
-  const std::string hold = std::to_string(count.hold) + (count.hold == 1 ? " holds" : " hold");
-  if (count.fall_short == 0) return hold;
-  return hold + ", " + std::to_string(count.fall_short) +
-         (count.fall_short == 1 ? " falls short" : " fall short");
+bool all_claims_hold(const RunRecord& record) {
+  return std::all_of(record.claims.begin(), record.claims.end(), [](const ClaimRecord& claim) {
+    return claim.holds || !claim.excepted.empty();
+  });
 }
-
-bool all_claims_hold(const RunRecord& record) { return count_claims(record).fall_short == 0; }
 
 std::vector<std::string> failures(const RunRecord& record) {
   std::vector<std::string> lines;
@@ -177,18 +188,38 @@ std::string null_text(const ClaimRecord& claim) {
   return "names no null: nothing says that it can fail";
 }
 
+std::string grade_text(const ClaimRecord& claim) {
+  if (claim.grade.of == Graded::not_graded) return {};
+  std::string text = is_soft(claim) ? "soft: " : "";
+  if (claim.grade.least == 0) {
+    text += "the input " + claim.grade.input + " passes";
+  } else {
+    text += "holds from s = " + rounded_text(claim.grade.least) + " on of " + claim.grade.input +
+            " + s (" + (claim.variant.empty() ? "its variant" : claim.variant) + " - " +
+            claim.grade.input + ")";
+  }
+  return text + ", of " + text_of(claim.grade.of);
+}
+
 void say_claims(const RunRecord& record, bool all_numbers) {
+  const std::string indent(16, ' ');
   for (const ClaimRecord& claim : record.claims) {
     const std::string in = claim.case_name.empty() || claim.case_name == "default"
                                ? ""
                                : "  [" + claim.case_name + "]";
-    say((claim.holds ? tinted("holds      ", Tint::good) : tinted("falls short", Tint::bad)) +
-        "  " + claim.text + in);
-    if (all_numbers || !claim.holds) say("             " + claim.detail);
-    if (all_numbers || !is_sound(claim)) say("             " + null_text(claim));
-    if (all_numbers && !claim.passed_too.empty()) {
-      say("             holds for " + claim.passed_too + " too");
-    }
+    const ClaimOutcome outcome = outcome_of(claim);
+    std::string verdict = text_of(outcome);
+    verdict.resize(indent.size() - 2, ' ');
+    say(tinted(verdict, outcome == ClaimOutcome::holds ? Tint::good : Tint::bad) + "  " +
+        claim.text + in);
+    const std::string grade = grade_text(claim);
+    if (all_numbers || !claim.holds) say(indent + claim.detail);
+    if (!claim.excepted.empty()) say(indent + "excepted: " + claim.excepted);
+    if (all_numbers || !is_sound(claim)) say(indent + null_text(claim));
+    if (!grade.empty() && (all_numbers || is_soft(claim))) say(indent + grade);
+    if (!all_numbers) continue;
+    if (!claim.nearest.empty()) say(indent + "fails by least: " + claim.nearest);
+    if (!claim.passed_too.empty()) say(indent + "holds for " + claim.passed_too + " too");
   }
 }
 
@@ -230,8 +261,17 @@ Json outcome_json(const RunRecord& record, const std::filesystem::path& folder) 
                               {"left", json_number(claim.left)},
                               {"right", json_number(claim.right)},
                               {"holds", claim.holds},
+                              {"outcome", text_of(outcome_of(claim))},
                               {"null", null_json(claim.null)},
-                              {"holds_too_for", claim.passed_too}});
+                              {"holds_too_for", claim.passed_too},
+                              {"fails_by_least", claim.nearest}});
+    if (!claim.excepted.empty()) json["claims"].back()["excepted"] = claim.excepted;
+    if (claim.grade.of != Graded::not_graded) {
+      json["claims"].back()["grade"] = {{"input", claim.grade.input},
+                                        {"of", text_of(claim.grade.of)},
+                                        {"least", json_number(claim.grade.least)},
+                                        {"soft", is_soft(claim)}};
+    }
     if (const auto ratio = slack(claim)) json["claims"].back()["value_over_limit"] = *ratio;
   }
   json["studies"] = Json::array();

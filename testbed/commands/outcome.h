@@ -9,18 +9,15 @@
 
 namespace geoprior {
 
-/// How many claims a run has decided, and how.
-struct ClaimCount {
-  int hold = 0;
-  int fall_short = 0;
-};
-ClaimCount count_claims(const RunRecord& record);
-
-/// "4 hold, 1 falls short"; "none" for a run without claims.
-std::string claim_count_text(const ClaimCount& count);
+/// What decided claims came to, each in each of its cases: "holds in 7, falls short in 1, not told
+/// apart in 2; 1 soft"; "none" of none.
+std::string claim_count_text(const std::vector<ClaimRecord>& claims);
 
 /// What the claim's null says of it, in words.
 std::string null_text(const ClaimRecord& claim);
+
+/// "soft: holds from s = 0.55 of …, graded by frames"; empty for a claim that is not graded.
+std::string grade_text(const ClaimRecord& claim);
 
 /// Claims with their verdicts, one line each; below it the numbers of those that fall short, or of
 /// all.
@@ -32,7 +29,7 @@ void say_studies(const RunRecord& record);
 /// One table a case: metrics by variants, and the median times; at most `most_cases` cases.
 void say_summary(const RunRecord& record, std::size_t most_cases = 4);
 
-/// True when every claim holds.
+/// True when no claim falls short where it must hold.
 bool all_claims_hold(const RunRecord& record);
 
 /// "variant 'x', case 'y': failed after 12 frames: why", for every variant that an error ended.

@@ -68,7 +68,7 @@ void say_outcome(const ExecuteResult& result, const Pictures& pictures, bool tab
   say_claims(record, table);
   if (!record.claims.empty()) say();
   for (const std::string& line : failures(record)) say(tinted(line, Tint::bad));
-  const std::string claims = "claims   " + claim_count_text(count_claims(record));
+  const std::string claims = "claims   " + claim_count_text(record.claims);
   say(all_claims_hold(record) ? claims : tinted(claims, Tint::bad));
   say("numbers  " + pictures.summary.value_or(result.folder / "run.h5").string());
   if (pictures.figure) say("picture  " + pictures.figure->string());
@@ -85,6 +85,7 @@ int run_command(const CommandContext& context, const RunRequest& request) {
   ExecuteRequest execution;
   if (request.out) execution.out = *request.out;
   execution.resume = request.resume;
+  execution.grade = true;
   execution.show_progress = isatty(STDERR_FILENO) == 1;
   execution.farewell = [&](const fs::path& folder) { report_stop(context, request, folder); };
   say(tinted(experiment.id, Tint::strong) + (experiment.quick ? " (quick)" : "") + "  " +

@@ -14,6 +14,7 @@
 #include "testbed/runner/journal/run_file.h"
 #include "testbed/runner/journal/sha256.h"
 #include "testbed/runner/judgement/claims.h"
+#include "testbed/runner/judgement/grades.h"
 #include "testbed/runner/judgement/measure.h"
 #include "testbed/runner/judgement/studies.h"
 #include "testbed/runner/number_text.h"
@@ -180,11 +181,13 @@ bool run_cases(const Experiment& experiment, const std::vector<Topic>& topics,
 
 /// Studies, claims, run.h5. What cannot be decided must not cost the run: it is recorded as a claim
 /// that falls short, run.h5 is written, and the error is thrown after that.
-void finish(const Experiment& experiment, Recorder& recorder, ExecuteResult& result) {
+void finish(const Experiment& experiment, const std::vector<Topic>& topics, bool grade,
+            Recorder& recorder, ExecuteResult& result) {
   std::optional<Error> undecided;
   try {
     result.record.studies = make_studies(experiment, result.record);
     result.record.claims = decide_claims(experiment, result.record);
+    if (grade) grade_claims(experiment, topics, result.folder, result.record);
   } catch (const Error& error) {
     undecided = error;
     ClaimRecord claim;
@@ -261,7 +264,11 @@ ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& t
   if (result.stopped) return result;
   if (!is_new) require_recorded_files(OpenedRun(result.folder, result.record));
   recorder.remove_checkpoints();
-  finish(experiment, recorder, result);
+  try {
+    finish(experiment, topics, request.grade, recorder, result);
+  } catch (const Stopped&) {  // while claims were graded: every frame is recorded
+    result.stopped = true;
+  }
   return result;
 }
 

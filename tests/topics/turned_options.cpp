@@ -145,20 +145,20 @@ std::vector<OptionRow> listed(OptionSet& set) {
   return list_options([&](OptionVisitor& visitor) { set.visit(visitor); });
 }
 
-/// Whether a claim says that one of the variants passes what the other, its null, fails: `check`
-/// holds that.
-bool is_told_by_claim(const Experiment& experiment, const std::string& in, const std::string& a,
-                      const std::string& b) {
+/// Whether a claim says that one of the variants passes what the other, its null, fails there:
+/// `check` holds what was blessed of it.
+bool is_told_by_claim(const Experiment& experiment, const BlessedSet& blessed,
+                      const std::string& in, const std::string& a, const std::string& b) {
   return std::any_of(
       experiment.claims.begin(), experiment.claims.end(), [&](const ClaimSpec& claim) {
         const bool between = claim.null && ((claim.variant == a && *claim.null == b) ||
                                             (claim.variant == b && *claim.null == a));
         const bool is_metric = claim.metric.find(':') == std::string::npos;
-        const bool in_case =
-            claim.cases.empty() ||
-            std::find(claim.cases.begin(), claim.cases.end(), in) != claim.cases.end();
-        return between && is_metric && in_case && claim.exempt == Exemption::none &&
-               claim.over == ClaimOver::case_ && !claim.known_shortfall;
+        if (!between || !is_metric || !blessed.claims.contains(claim.text)) return false;
+        const auto& cases = blessed.claims.at(claim.text);
+        const bool told = cases.contains(in) && cases.at(in).outcome == ClaimOutcome::holds;
+        return told && claim.exempt == Exemption::none && claim.over == ClaimOver::case_ &&
+               !claim.known_shortfall;
       });
 }
 
@@ -304,10 +304,10 @@ void TurnedOptions::note(const std::string& place, const std::string& row, const
 Turned TurnedOptions::effect(const Experiment& experiment, const BlessedSet* blessed,
                              const Column& a, const Column& b) const {
   const std::string &name_a = a.variant->name, &name_b = b.variant->name;
-  if (a.in == b.in && is_told_by_claim(experiment, a.in, name_a, name_b)) {
+  if (blessed == nullptr) return Turned::unknown;
+  if (a.in == b.in && is_told_by_claim(experiment, *blessed, a.in, name_a, name_b)) {
     return Turned::with_effect;
   }
-  if (blessed == nullptr) return Turned::unknown;
   const std::string* outcome_a = find_outcome(*blessed, a.in, name_a);
   const std::string* outcome_b = find_outcome(*blessed, b.in, name_b);
   if (outcome_a != nullptr && outcome_b != nullptr) {

@@ -19,6 +19,10 @@ struct CgalArapOptions {
 /// triangles is left with edges 2 % wrong, and is exact to 1e-13 after a thousand. Not scaled: the
 /// energy asks for true lengths.
 ///
+/// Both take triangles without area off the border (three points of one line, as remeshing leaves
+/// them at straight borders), by which their weights would divide, and put their corners back on
+/// that line.
+///
 /// @return        n x 2 (m)
 /// @throws Error  unless the mesh is a disc, and with CGAL's message when it gives up
 /// Source: CGAL 5.5, Triangulated Surface Mesh Parameterization; Liu et al. 2008.

@@ -182,7 +182,8 @@ void write_studies(H5Group& root, const std::vector<StudyRecord>& studies) {
 
 void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
   std::vector<std::string> text, cases, detail, null, null_verdict, null_detail, passed_too;
-  std::vector<double> left, right, null_left, null_right;
+  std::vector<std::string> variant, outcome, nearest, excepted, input, graded;
+  std::vector<double> left, right, null_left, null_right, least;
   std::vector<std::int64_t> holds;
   for (const ClaimRecord& claim : claims) {
     text.push_back(claim.text);
@@ -197,6 +198,13 @@ void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
     null_right.push_back(claim.null.right);
     null_detail.push_back(claim.null.detail);
     passed_too.push_back(claim.passed_too);
+    variant.push_back(claim.variant);
+    outcome.push_back(text_of(outcome_of(claim)));
+    nearest.push_back(claim.nearest);
+    excepted.push_back(claim.excepted);
+    input.push_back(claim.grade.input);
+    graded.push_back(text_of(claim.grade.of));
+    least.push_back(claim.grade.least);
   }
   root.write_table("claims", {{"text", text},
                               {"case", cases},
@@ -209,7 +217,14 @@ void write_claims(H5Group& root, const std::vector<ClaimRecord>& claims) {
                               {"null_left", null_left},
                               {"null_right", null_right},
                               {"null_detail", null_detail},
-                              {"passed_too", passed_too}});
+                              {"passed_too", passed_too},
+                              {"variant", variant},
+                              {"outcome", outcome},
+                              {"nearest", nearest},
+                              {"excepted", excepted},
+                              {"input", input},
+                              {"graded", graded},
+                              {"least_grade", least}});
 }
 
 void write_root(H5Group root, const RunRecord& record, TableSource run_folder) {
@@ -425,12 +440,15 @@ std::vector<StudyRecord> read_studies(const H5Node& parent) {
   return studies;
 }
 
-Discrimination discrimination_of(const std::string& text) {
-  const auto found = std::find(kDiscriminations.begin(), kDiscriminations.end(), text);
-  if (found == kDiscriminations.end()) {
-    throw Error("'" + text + "' is no verdict of a null", "claims: null_verdict");
+/// The enumerator that a column of the claims has the word of.
+template <class Enum, std::size_t n>
+Enum enumerator_of(const std::string& text, const std::array<std::string_view, n>& words,
+                   const std::string& column_name) {
+  const auto found = std::find(words.begin(), words.end(), text);
+  if (found == words.end()) {
+    throw Error("'" + text + "' is no value of the column", "claims: " + column_name);
   }
-  return static_cast<Discrimination>(found - kDiscriminations.begin());
+  return static_cast<Enum>(found - words.begin());
 }
 
 /// What schema version 2 did not have.
@@ -442,11 +460,29 @@ void read_nulls(const H5Node& root, std::vector<ClaimRecord>& claims) {
   for (std::size_t i = 0; i < claims.size(); ++i) {
     NullRecord& null = claims[i].null;
     null.variant = column<std::string>(table, 0)[i];
-    null.verdict = discrimination_of(column<std::string>(table, 1)[i]);
+    null.verdict = enumerator_of<Discrimination>(column<std::string>(table, 1)[i], kDiscriminations,
+                                                 "null_verdict");
     null.detail = column<std::string>(table, 2)[i];
     claims[i].passed_too = column<std::string>(table, 3)[i];
     null.left = column<double>(table, 4)[i];
     null.right = column<double>(table, 5)[i];
+  }
+}
+
+/// What schema version 3 did not have. The outcome follows from the rest.
+void read_grades(const H5Node& root, std::vector<ClaimRecord>& claims) {
+  std::vector<H5Column> table{{"variant", Texts{}},  {"nearest", Texts{}},
+                              {"excepted", Texts{}}, {"input", Texts{}},
+                              {"graded", Texts{}},   {"least_grade", Numbers{}}};
+  root.read_table("claims", table);
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    claims[i].variant = column<std::string>(table, 0)[i];
+    claims[i].nearest = column<std::string>(table, 1)[i];
+    claims[i].excepted = column<std::string>(table, 2)[i];
+    claims[i].grade.input = column<std::string>(table, 3)[i];
+    claims[i].grade.of =
+        enumerator_of<Graded>(column<std::string>(table, 4)[i], kGradeds, "graded");
+    claims[i].grade.least = column<double>(table, 5)[i];
   }
 }
 
@@ -461,6 +497,7 @@ std::vector<ClaimRecord> read_claims(const H5Node& root, int schema_version) {
                       column<double>(table, 4)[i], column<std::int64_t>(table, 5)[i] != 0});
   }
   if (schema_version >= 3) read_nulls(root, claims);
+  if (schema_version >= 4) read_grades(root, claims);
   return claims;
 }
 

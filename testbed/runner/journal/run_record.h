@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -127,6 +128,14 @@ struct NullRecord {
   std::string detail;  ///< as the claim's; why it is undecided
 };
 
+/// How much of its method a claim needs: of output(s) = input + s (output - input), the smallest s,
+/// in steps of 0.05, from which on it holds.
+struct GradeRecord {
+  std::string input;  ///< variant that does nothing; empty: none to grade from
+  Graded of = Graded::not_graded;
+  double least = std::numeric_limits<double>::quiet_NaN();  ///< 0: the input passes
+};
+
 struct ClaimRecord {
   std::string text;
   std::string case_name;
@@ -137,12 +146,31 @@ struct ClaimRecord {
   NullRecord null = {};
   std::string passed_too =
       {};  ///< further variants that the inequality holds for: "adaptive, dense"
+  /// Of all others of the case, nulls too, the one that fails by least: "adaptive"; empty: none.
+  std::string nearest = {};
+  std::string excepted = {};  ///< why it need not hold in this case; empty: it must
+  std::string variant = {};   ///< that speaks, of several that the claim is about
+  GradeRecord grade = {};
 };
+
+/// What the record says: a claim that falls short does so whatever its null says.
+inline ClaimOutcome outcome_of(const ClaimRecord& claim) {
+  if (!claim.holds) return ClaimOutcome::falls_short;
+  const Discrimination verdict = claim.null.verdict;
+  const bool told = verdict == Discrimination::discriminates || verdict == Discrimination::exempt;
+  return told ? ClaimOutcome::holds : ClaimOutcome::not_told_apart;
+}
+
+/// Below this a claim is soft: what does a good part less than the method would pass, too.
+inline constexpr double kSoftBelow = 0.7;
+
+/// Whether the claim is graded, and soft.
+inline bool is_soft(const ClaimRecord& claim) { return claim.grade.least < kSoftBelow; }
 
 /// The memory image of a run: what run.h5 holds (docs/file-formats.md), what claims, check and
 /// report read.
 struct RunRecord {
-  int schema_version = 3;
+  int schema_version = 4;
   std::string experiment_id;
   std::string title;
   std::string figure;

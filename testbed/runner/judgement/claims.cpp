@@ -90,19 +90,29 @@ std::optional<std::string> fallen_short(const VariantRecord& variant, const Vari
   return std::nullopt;
 }
 
-/// The variants beside those of the claim that the inequality holds for.
-std::vector<std::string> others_that_pass(const ClaimSpec& claim, const CaseRecord& in) {
-  std::vector<std::string> names;
+bool is_about(const ClaimSpec& claim, const std::string& variant) {
+  return variant == claim.variant ||
+         std::find(claim.variants.begin(), claim.variants.end(), variant) != claim.variants.end();
+}
+
+/// All other variants of the case in the place of the claim's: which pass, and which fails by
+/// least.
+void ask_others(const ClaimSpec& claim, const CaseRecord& in, Decision& decision) {
+  double least = -kInfinity;
   for (const VariantRecord& other : in.variants) {
-    const bool named =
-        other.name == claim.variant || claim.null == other.name || claim.of == other.name;
-    if (named || is_null_control(other.role)) continue;
+    if (is_about(claim, other.name)) continue;
     try {
-      if (judge(claim, in, other.name).holds()) names.push_back(other.name);
+      const Judgement judgement = judge(claim, in, other.name);
+      const bool named = claim.null == other.name || claim.of == other.name;
+      if (!judgement.holds() && judgement.worst().margin > least) {
+        least = judgement.worst().margin;
+        decision.record.nearest = other.name;
+      } else if (judgement.holds() && !named && !is_null_control(other.role)) {
+        decision.passed_too.push_back(other.name);
+      }
     } catch (const Error&) {  // has no value: it does not pass
     }
   }
-  return names;
 }
 
 Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const VariantRecord& variant,
@@ -111,6 +121,7 @@ Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const Vari
   ClaimRecord& record = decision.record;
   record.text = claim.text;
   record.case_name = in.name;
+  record.variant = claim.variant;
   const auto judge_null = [&](const std::string& null) { return judge(claim, in, null); };
   if (const auto reason = fallen_short(variant, of)) {
     record.left = record.right = std::numeric_limits<double>::quiet_NaN();
@@ -120,7 +131,7 @@ Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const Vari
   }
   const Judgement own = judge(claim, in, claim.variant);
   speak(decision, own.worst());
-  decision.passed_too = others_that_pass(claim, in);
+  ask_others(claim, in, decision);
   ask_null(claim, &own, judge_null, decision);
   return decision;
 }
@@ -168,19 +179,20 @@ NullRecord null_over(const std::vector<Decision>& seeds) {
 }
 
 /// "9 of 10 seeds; worst: …": the seed nearest to failing speaks for the claim.
-ClaimRecord over_seeds(const std::vector<Decision>& seeds, const Cases& group) {
+Decision over_seeds(const std::vector<Decision>& seeds, const Cases& group) {
   const auto worst = std::min_element(
       seeds.begin(), seeds.end(), [](const auto& a, const auto& b) { return a.margin < b.margin; });
   const std::size_t held =
       std::count_if(seeds.begin(), seeds.end(), [](const auto& d) { return d.record.holds; });
-  ClaimRecord record = worst->record;
+  Decision all = *worst;
+  ClaimRecord& record = all.record;
   record.case_name = seeds.front().record.case_name;
   record.holds = most(held, seeds.size());
   record.detail = std::to_string(held) + " of " + std::to_string(seeds.size()) +
-                  " seeds; worst: " + worst->record.detail;
+                  (seeds.size() == 1 ? " seed; worst: " : " seeds; worst: ") + worst->record.detail;
   record.null = null_over(seeds);
-  record.passed_too = joined(that_mostly_pass(seeds, group));
-  return record;
+  all.passed_too = that_mostly_pass(seeds, group);
+  return all;
 }
 
 /// What was swept beside the seed: cases that agree in it are one case under several seeds.
@@ -189,15 +201,13 @@ std::map<std::string, std::string> without_seed(std::map<std::string, std::strin
   return swept;
 }
 
-bool named_by(const ClaimSpec& claim, const CaseRecord& in) {
-  return std::find(claim.cases.begin(), claim.cases.end(), in.name) != claim.cases.end();
-}
-
-/// The cases that the claim is about: one a group, or all seeds of one.
+/// The cases that a claim is decided in: one a group, or all seeds of one. Cases that are there for
+/// claims over seeds decide no other: the file's own seed does.
 std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
   std::vector<Cases> groups;
   for (const CaseRecord& in : record.cases) {
-    if (in.claims_only && claim.over == ClaimOver::case_ && !named_by(claim, in)) continue;
+    const bool is_seed = in.claims_only && in.swept.contains("seed");
+    if (is_seed && claim.over == ClaimOver::case_) continue;
     const auto same = [&](const Cases& group) {
       return claim.over == ClaimOver::seed &&
              without_seed(group.front()->swept) == without_seed(in.swept);
@@ -205,53 +215,85 @@ std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
     const auto found = std::find_if(groups.begin(), groups.end(), same);
     (found == groups.end() ? groups.emplace_back() : *found).push_back(&in);
   }
-  std::erase_if(groups, [&](const Cases& group) {
-    return !claim.cases.empty() && std::none_of(group.begin(), group.end(), [&](const auto* in) {
-      return named_by(claim, *in);
-    });
-  });
   return groups;
 }
 
-/// The decision in each case of the group that has the sides; those are all of a group that `cases`
-/// names.
-std::vector<Decision> decide_group(const ClaimSpec& claim, const Cases& group) {
+/// The decision in each case of the group that has the sides. Where they have no value in any, the
+/// reason is put into `without_value`.
+/// @throws Error  where they have a value in some of the cases only
+std::vector<Decision> decide_group(const ClaimSpec& claim, const Cases& group,
+                                   std::optional<Error>& without_value) {
   std::vector<Decision> decisions;
+  std::optional<Error> missing;
   for (const CaseRecord* in : group) {
     const VariantRecord* variant = find_variant(*in, claim.variant);
     const VariantRecord* of = claim.of ? find_variant(*in, *claim.of) : nullptr;
-    if (variant != nullptr && (!claim.of || of != nullptr)) {
+    if (variant == nullptr || (claim.of && of == nullptr)) continue;
+    try {
       decisions.push_back(decide_in_case(claim, *in, *variant, of));
-    } else if (!claim.cases.empty()) {
-      throw Error("has not both variants", "claim '" + claim.text + "', case '" + in->name + "'");
+    } catch (const Error& error) {
+      missing = error;
+      continue;
     }
+    const auto excepted = claim.except.find(in->name);
+    if (excepted != claim.except.end()) decisions.back().record.excepted = excepted->second;
   }
+  if (missing && !decisions.empty()) throw Error(*missing);
+  if (missing && !without_value) without_value = missing;
   return decisions;
 }
 
-std::vector<ClaimRecord> decide_in_cases(const ClaimSpec& claim, const Experiment& experiment,
-                                         const RunRecord& record) {
-  std::vector<ClaimRecord> decided;
+/// In every case that has the sides, each with a value; over seeds, those that a case has, of which
+/// one at least must have ten.
+std::vector<Decision> decide_in_cases(const ClaimSpec& claim, const Experiment& experiment,
+                                      const RunRecord& record) {
+  std::vector<Decision> decided;
+  std::optional<Error> without_value;
+  std::size_t most_seeds = 0;
   for (const Cases& group : groups_of(claim, record)) {
-    std::vector<Decision> decisions = decide_group(claim, group);
+    const std::vector<Decision> decisions = decide_group(claim, group, without_value);
     if (decisions.empty()) continue;
-    if (claim.over == ClaimOver::seed) {
-      if (!experiment.quick && decisions.size() < kLeastSeeds) {
-        throw Error("only " + std::to_string(decisions.size()) + " seeds have what it needs",
-                    "claim '" + claim.text + "', case '" + group.front()->name + "'",
-                    "at least " + std::to_string(kLeastSeeds) + ", of a sweep over `seed`");
-      }
-      decided.push_back(over_seeds(decisions, group));
-    } else {
-      decisions.front().record.passed_too = joined(decisions.front().passed_too);
-      decided.push_back(std::move(decisions.front().record));
+    const bool seeds = claim.over == ClaimOver::seed;
+    decided.push_back(seeds ? over_seeds(decisions, group) : decisions.front());
+    most_seeds = std::max(most_seeds, decisions.size());
+    decided.back().record.passed_too = joined(decided.back().passed_too);
+  }
+  if (!decided.empty() && claim.over == ClaimOver::seed && !experiment.quick &&
+      most_seeds < kLeastSeeds) {
+    throw Error("only " + std::to_string(most_seeds) + " seeds have what it needs",
+                "claim '" + claim.text + "'",
+                "at least " + std::to_string(kLeastSeeds) + " in one case, of a sweep over `seed`");
+  }
+  if (!decided.empty()) return decided;
+  if (without_value) throw Error(*without_value);
+  throw Error("no case has what it is about", "claim '" + claim.text + "'",
+              "variant '" + claim.variant + "'" + (claim.of ? " and '" + *claim.of + "'" : ""));
+}
+
+/// What speaks of several variants comes first: one that fails, one that its null passes too, the
+/// one with the least margin.
+bool speaks_before(const Decision& a, const Decision& b) {
+  const auto rank = [](const Decision& one) {
+    const ClaimOutcome outcome = outcome_of(one.record);
+    return outcome == ClaimOutcome::falls_short      ? 0
+           : outcome == ClaimOutcome::not_told_apart ? 1
+                                                     : 2;
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.margin < b.margin;
+}
+
+/// One decision a case, of those of all variants that the claim is about.
+void add_variant(std::vector<Decision> decided, std::vector<Decision>& all) {
+  for (Decision& one : decided) {
+    const auto known = std::find_if(all.begin(), all.end(), [&](const Decision& other) {
+      return other.record.case_name == one.record.case_name;
+    });
+    if (known == all.end()) {
+      all.push_back(std::move(one));
+    } else if (speaks_before(one, *known)) {
+      *known = std::move(one);
     }
   }
-  if (decided.empty()) {
-    throw Error("no case has what it is about", "claim '" + claim.text + "'",
-                "variant '" + claim.variant + "'" + (claim.of ? " and '" + *claim.of + "'" : ""));
-  }
-  return decided;
 }
 
 /// The studies with `null` in the place of the variant of the one that the claim is about; `of`
@@ -264,8 +306,8 @@ std::vector<StudyRecord> studies_of_null(const ClaimSpec& claim, const Experimen
   return make_studies(replaced, record);
 }
 
-ClaimRecord decide_study(const ClaimSpec& claim, const Experiment& experiment,
-                         const RunRecord& record, const std::vector<StudyRecord>& studies) {
+Decision decide_study(const ClaimSpec& claim, const Experiment& experiment, const RunRecord& record,
+                      const std::vector<StudyRecord>& studies) {
   const Judgement own = judge_study(claim, studies);
   Decision decision;
   decision.record.text = claim.text;
@@ -274,7 +316,7 @@ ClaimRecord decide_study(const ClaimSpec& claim, const Experiment& experiment,
     return judge_study(claim, studies_of_null(claim, experiment, record, null));
   };
   ask_null(claim, &own, judge_null, decision);
-  return decision.record;
+  return decision;
 }
 
 }  // namespace
@@ -283,14 +325,18 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
   std::vector<ClaimRecord> decisions;
   std::vector<StudyRecord> studies = record.studies;
   if (studies.empty()) studies = make_studies(experiment, record);
-  for (const ClaimSpec& claim : experiment.claims) {
-    if (claim.metric.starts_with("study:")) {
-      decisions.push_back(decide_study(claim, experiment, record, studies));
-      continue;
+  const std::vector<ClaimSpec>& claims = experiment.claims;
+  for (auto claim = claims.begin(); claim != claims.end();) {
+    const auto end = std::find_if(
+        claim, claims.end(), [&](const ClaimSpec& other) { return other.text != claim->text; });
+    std::vector<Decision> decided;
+    for (; claim != end; ++claim) {
+      add_variant(claim->metric.starts_with("study:")
+                      ? std::vector{decide_study(*claim, experiment, record, studies)}
+                      : decide_in_cases(*claim, experiment, record),
+                  decided);
     }
-    for (ClaimRecord& decided : decide_in_cases(claim, experiment, record)) {
-      decisions.push_back(std::move(decided));
-    }
+    for (Decision& one : decided) decisions.push_back(std::move(one.record));
   }
   return decisions;
 }
@@ -305,6 +351,17 @@ std::optional<double> slack(const ClaimRecord& claim) {
 bool is_sound(const ClaimRecord& claim) {
   return claim.null.verdict == Discrimination::discriminates ||
          claim.null.verdict == Discrimination::exempt;
+}
+
+std::vector<ClaimRecord> unsound(const std::vector<ClaimRecord>& claims) {
+  std::vector<ClaimRecord> found;
+  for (const ClaimRecord& claim : claims) {
+    const bool told = std::any_of(claims.begin(), claims.end(), [&](const ClaimRecord& other) {
+      return other.text == claim.text && is_sound(other);
+    });
+    if (!told) found.push_back(claim);
+  }
+  return found;
 }
 
 }  // namespace geoprior

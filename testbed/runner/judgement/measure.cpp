@@ -82,15 +82,31 @@ int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter)
   return found == frames.end() ? -1 : static_cast<int>(found - frames.begin());
 }
 
+std::map<std::string, double> measure_frame(const MetricGroup& group, const Scene& scene,
+                                            const Frame& frame, const Frame* reference) {
+  std::map<std::string, double> values;
+  if (!group.of_frame || (group.needs_reference && reference == nullptr)) return values;
+  const std::string where = " at parameter " + number_text(frame.parameter);
+  add_values(
+      group, where, [&] { return group.of_frame(scene, frame, reference); }, values);
+  return values;
+}
+
 std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
                                             const Frame& frame, const Frame* reference) {
   std::map<std::string, double> values;
-  const std::string where = " at parameter " + number_text(frame.parameter);
   for (const MetricGroup& group : topic.metrics) {
-    if (!group.of_frame || (group.needs_reference && reference == nullptr)) continue;
-    add_values(
-        group, where, [&] { return group.of_frame(scene, frame, reference); }, values);
+    values.merge(measure_frame(group, scene, frame, reference));
   }
+  return values;
+}
+
+std::map<std::string, double> measure_sequence(const MetricGroup& group, const Scene& scene,
+                                               const FrameSequence& frames) {
+  std::map<std::string, double> values;
+  if (!group.of_sequence) return values;
+  add_values(
+      group, "", [&] { return group.of_sequence(scene, frames); }, values);
   return values;
 }
 
@@ -98,9 +114,7 @@ std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& 
                                                const FrameSequence& frames) {
   std::map<std::string, double> values;
   for (const MetricGroup& group : topic.metrics) {
-    if (!group.of_sequence) continue;
-    add_values(
-        group, "", [&] { return group.of_sequence(scene, frames); }, values);
+    values.merge(measure_sequence(group, scene, frames));
   }
   return values;
 }

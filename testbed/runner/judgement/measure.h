@@ -22,8 +22,15 @@ int frame_of_parameter(const std::vector<FrameRecord>& frames, double parameter)
 std::map<std::string, double> measure_frame(const Topic& topic, const Scene& scene,
                                             const Frame& frame, const Frame* reference);
 
+/// The same of one group; none where it measures sequences, or there is no reference that it needs.
+std::map<std::string, double> measure_frame(const MetricGroup& group, const Scene& scene,
+                                            const Frame& frame, const Frame* reference);
+
 /// Values of the topic's sequence metrics. @throws Error  as measure_frame
 std::map<std::string, double> measure_sequence(const Topic& topic, const Scene& scene,
+                                               const FrameSequence& frames);
+/// The same of one group; none where it measures frames.
+std::map<std::string, double> measure_sequence(const MetricGroup& group, const Scene& scene,
                                                const FrameSequence& frames);
 
 /// @throws Error  naming a diagnostic of the frame that is not in the topic's table

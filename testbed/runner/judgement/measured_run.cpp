@@ -9,7 +9,6 @@
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/formats/system_reason.h"
-#include "testbed/runner/inputs/run_inputs.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/recorded_frames.h"
@@ -17,6 +16,7 @@
 #include "testbed/runner/journal/sha256.h"
 #include "testbed/runner/judgement/claims.h"
 #include "testbed/runner/judgement/measure.h"
+#include "testbed/runner/judgement/recorded_scene.h"
 #include "testbed/runner/judgement/studies.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/process/build_info.h"
@@ -31,47 +31,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
-const CaseSpec& case_spec(const Experiment& experiment, const std::string& name) {
-  for (const CaseSpec& spec : experiment.cases) {
-    if (spec.name == name) return spec;
-  }
-  throw Error("the run has a case '" + name + "' that its own experiment does not make",
-              experiment.id);
-}
-
-void require_recorded_inputs(const Scene& scene, const RunRecord& record) {
-  for (const fs::path& file : scene.inputs()) {
-    const std::string name = input_name(file);
-    const std::string sha256 = sha256_of_file(file);
-    const bool is_same = std::any_of(
-        record.inputs.begin(), record.inputs.end(),
-        [&](const StoredFile& input) { return input.name == name && input.sha256 == sha256; });
-    if (!is_same) {
-      throw Error("is not the input that the run read: its frames cannot be measured with it",
-                  file.string(), "the file as it was, or a new run");
-    }
-  }
-}
-
-std::shared_ptr<Scene> load_scene(const Experiment& experiment, const CaseSpec& spec,
-                                  const std::vector<Topic>& topics, const RunRecord& record) {
-  try {
-    const auto options = resolve_recorded_inputs(experiment, spec, topics, record.inputs);
-    auto scene =
-        topic_of(experiment, topics).load(*options, experiment.file.parent_path(), spec.seed);
-    require_recorded_inputs(*scene, record);
-    return scene;
-  } catch (const Error& error) {
-    throw Error(error.what(), "scene of case '" + spec.name + "'");
-  }
-}
-
-/// The variant that the other is compared with; null when it has none, or it was left out.
-const VariantRecord* reference_of(const CaseRecord& in, const VariantRecord& variant) {
-  if (variant.reference.empty() || variant.reference == variant.name) return nullptr;
-  return find_variant(in, variant.reference);
-}
 
 /// Measures the variants of one case, a frame at a time.
 class CaseMeasurement {
@@ -298,7 +257,7 @@ MeasuredRun measure_again(const OpenedRun& run, const std::vector<Topic>& topics
     throw_if_stopped();
     const CaseSpec& spec = case_spec(experiment, one.name);
     with_threads(spec.threads, [&] {
-      const std::shared_ptr<Scene> scene = load_scene(experiment, spec, topics, record);
+      const std::shared_ptr<Scene> scene = load_recorded_scene(experiment, spec, topics, record);
       const CaseMeasurement measurement(topic, *scene, files, one);
       for (VariantRecord& variant : one.variants) variant = measurement.measure(variant);
     });

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "testbed/runner/reference/blessed_claims.h"
 #include "testbed/runner/reference/outcomes.h"
 
 namespace geoprior {
@@ -40,6 +41,7 @@ struct BlessedSet {
   std::optional<double> processor_s;  ///< processor time that the run took
   ReferenceSet values;
   Outcomes outcomes = {};  ///< of experiments whose `[check]` asks for them
+  BlessedClaims claims = {};
 };
 
 /// results/reference/<id>.txt: a set "full", a set "quick", or one of them.

@@ -1,6 +1,7 @@
 #include "testbed/runner/reference/parser.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <map>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "testbed/joined.h"
 #include "testbed/runner/reference/text.h"
 
 namespace geoprior {
@@ -114,12 +116,12 @@ class ReferenceParser {
         {"frames", &ReferenceParser::read_frames},   {"metrics", &ReferenceParser::read_metrics},
         {"cost", &ReferenceParser::read_cost},       {"unit", &ReferenceParser::read_unit},
         {"cases", &ReferenceParser::read_cases},     {"variants", &ReferenceParser::read_variants},
-        {"outcome", &ReferenceParser::read_outcome}};
+        {"outcome", &ReferenceParser::read_outcome}, {"claim", &ReferenceParser::read_claim}};
     const auto head = heads.find(first);
     if (head == heads.end() || words_.front().is_quoted) {
       fail("'" + first + "' begins no line",
-           "set, blessed, frames, metrics, content, cost, unit, cases, variants, outcome, end, or "
-           "two spaces before a row");
+           "set, blessed, frames, metrics, content, cost, unit, cases, variants, outcome, claim, "
+           "end, or two spaces before a row");
     }
     require_set();
     (this->*head->second)();
@@ -248,6 +250,36 @@ class ReferenceParser {
     const std::string in = name_of(words_[1]), variant = name_of(words_[2]);
     if (!set_->outcomes[in].emplace(variant, hash).second) {
       fail("the outcome of variant '" + variant + "' in case '" + in + "' is there twice");
+    }
+  }
+
+  /// The enumerator that a word stands for, its spaces as "-".
+  template <class Enum, std::size_t n>
+  Enum enumerator_of(std::string word, const std::array<std::string_view, n>& words) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      std::string known(words[i]);
+      std::replace(known.begin(), known.end(), ' ', '-');
+      if (known == word) return static_cast<Enum>(i);
+    }
+    fail("'" + word + "' is no word of a claim", joined(words));
+  }
+
+  void read_claim() {
+    ++rows_;
+    require_words(8,
+                  "claim, the case, the outcome, excepted or -, the null, what is graded, the "
+                  "grade, the text");
+    BlessedClaim claim;
+    claim.outcome = enumerator_of<ClaimOutcome>(words_[2].text, kClaimOutcomes);
+    claim.excepted = words_[3].text == "excepted";
+    claim.null = name_of(words_[4]);
+    if (words_[5].text != "-") {
+      claim.graded = enumerator_of<Graded>(words_[5].text, kGradeds);
+      claim.least = number_of(words_[6]);
+    }
+    const std::string in = name_of(words_[1]), &text = words_[7].text;
+    if (!set_->claims[text].emplace(in, claim).second) {
+      fail("the claim '" + text + "' in case '" + in + "' is there twice");
     }
   }
 

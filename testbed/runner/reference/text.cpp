@@ -209,6 +209,27 @@ std::string outcomes_text(const Outcomes& outcomes) {
   return text;
 }
 
+/// "not-told-apart": an outcome as one word.
+std::string outcome_word(ClaimOutcome outcome) {
+  std::string word = text_of(outcome);
+  std::replace(word.begin(), word.end(), ' ', '-');
+  return word;
+}
+
+std::string claims_text(const BlessedClaims& claims) {
+  std::string text;
+  for (const auto& [claim, cases] : claims) {
+    for (const auto& [in, one] : cases) {
+      const bool graded = one.graded != Graded::not_graded;
+      text += "claim " + word_of(in) + " " + outcome_word(one.outcome) + " " +
+              (one.excepted ? "excepted" : "-") + " " + word_of(one.null) + " " +
+              (graded ? text_of(one.graded) + " " + number_text(one.least) : "- -") + " " +
+              escaped_text(claim) + "\n";
+    }
+  }
+  return text;
+}
+
 std::string set_text(const std::string& size, const BlessedSet& set, const Table& table) {
   std::string text = "\nset " + size + "\nblessed " + word_of(set.blessing.commit) + " " +
                      escaped_text(set.blessing.reason) + "\n";
@@ -216,7 +237,7 @@ std::string set_text(const std::string& size, const BlessedSet& set, const Table
   if (set.processor_s) text += "cost " + rounded_text(*set.processor_s, kDigitsOfCost) + " s\n";
   text += units_text(table);
   text += wrapped("cases", table.cases);
-  return text + rows_text(table) + outcomes_text(set.outcomes);
+  return text + rows_text(table) + outcomes_text(set.outcomes) + claims_text(set.claims);
 }
 
 }  // namespace
@@ -229,6 +250,7 @@ std::string reference_text(const Reference& reference) {
     const Table table = table_of(set.values);
     rows += table.rows.size() + table.lone.size();
     for (const auto& [in, variants] : set.outcomes) rows += variants.size();
+    for (const auto& [claim, cases] : set.claims) rows += cases.size();
     text += set_text(size, set, table);
   }
   return text + "\nend " + std::to_string(rows) + "\n";

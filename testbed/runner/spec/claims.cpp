@@ -1,6 +1,7 @@
 #include "testbed/runner/spec/claims.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/limits.h"
@@ -78,12 +79,41 @@ void read_at(const TomlNode* at, std::optional<double>& parameter, std::string* 
 /// `OfReduction` is `same`, then the enumerators of `Reduction` in their order.
 Reduction reduction_of(OfReduction x) { return static_cast<Reduction>(static_cast<int>(x) - 1); }
 
+void read_except(const ClaimTable& table, const TomlNode& node, const KnownNames& names,
+                 ClaimSpec& claim) {
+  for (std::size_t i = 0; i < table.except.size(); ++i) {
+    const ExceptTable& except = table.except[i];
+    const TomlNode& place = node.find("except")->items[i];
+    require_line(except.reason, "the reason", place_of(place, "reason"));
+    require_cases(except.cases, names, place);
+    for (const std::string& name : except.cases) {
+      if (claim.except.emplace(name, except.reason).second) continue;
+      throw Error("case '" + name + "' is excepted twice", place_of(place, "cases"));
+    }
+  }
+}
+
+/// Of `variants`, those that run; `variant` alone without them.
+Names variants_of(const ClaimTable& table, const TomlNode& node, const KnownNames& names) {
+  if (table.variants.empty()) return {table.variant.value_or("")};
+  if (table.variant) {
+    throw Error("has both `variant` and `variants`", node.place + ": claim", "one of the two");
+  }
+  Names kept;
+  for (const std::string& name : table.variants) {
+    if (contains(kept, name)) {
+      throw Error("names '" + name + "' twice", place_of(node, "variants"));
+    }
+    if (runs(name, names, place_of(node, "variants"))) kept.push_back(name);
+  }
+  return kept;
+}
+
 ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   ClaimSpec claim;
   require_line(table.text, "a claim", place_of(node, "text"));
   claim.text = table.text;
   claim.metric = table.metric;
-  claim.variant = table.variant.value_or("");
   claim.of = table.of;
   claim.value = table.value;
   claim.is = table.is;
@@ -93,7 +123,6 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.known_shortfall = table.known_shortfall;
   claim.reduce = table.reduce;
   if (table.of_reduce != OfReduction::same) claim.of_reduce = reduction_of(table.of_reduce);
-  claim.cases = table.cases;
   claim.over = table.over;
   claim.null = table.null;
   read_at(node.find("at"), claim.at_parameter, &claim.at_key);
@@ -106,7 +135,8 @@ void require_sides(const ClaimSpec& claim, const TomlNode& node) {
                 node.place + ": claim", "either `of`, a variant, or `value`, a number");
   }
   const bool study = claim.metric.starts_with("study:");
-  if (study && (!claim.variant.empty() || claim.of || claim.at_parameter || !claim.cases.empty())) {
+  const bool of_cases = claim.of || claim.at_parameter || !claim.except.empty();
+  if (study && (!claim.variant.empty() || of_cases)) {
     throw Error("a study has one value for the whole experiment", place_of(node, "metric"),
                 "metric, is, value, factor, offset, tolerance");
   }
@@ -173,11 +203,43 @@ void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
                compares ? metric : nullptr, names, node);
 }
 
-void require_own_text(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,
-                      const TomlNode& node) {
-  const auto same = [&](const ClaimSpec& other) { return other.text == claim.text; };
-  if (std::none_of(before.begin(), before.end(), same)) return;
-  throw Error("two claims say '" + claim.text + "'", place_of(node, "text"), "texts of their own");
+/// The value that a claim judges, and what it is held against.
+auto number_of(const ClaimSpec& claim) {
+  return std::tie(claim.metric, claim.variant, claim.of, claim.value, claim.is, claim.factor,
+                  claim.offset, claim.at_parameter, claim.reduce, claim.of_reduce);
+}
+
+/// No claim says in other words, or of other cases, what another says: it is decided in all cases.
+void require_own_claim(const ClaimSpec& claim, const std::vector<ClaimSpec>& before,
+                       const TomlNode& node) {
+  for (const ClaimSpec& other : before) {
+    if (other.text == claim.text) {
+      throw Error("two claims say '" + claim.text + "'", place_of(node, "text"),
+                  "texts of their own");
+    }
+    if (number_of(other) != number_of(claim)) continue;
+    throw Error("'" + other.text + "' claims the same of the same number", place_of(node, "metric"),
+                "one claim, which is decided in every case");
+  }
+}
+
+/// False where --variant left out what the claim is about; throws for a mistake of the file.
+bool is_decidable(const ClaimSpec& claim, const TomlNode& root, const Topic& topic,
+                  const KnownNames& names, const TomlNode& node) {
+  bool decidable = true;
+  if (claim.metric.starts_with("study:") && !contains(names.studies, claim.metric.substr(6))) {
+    // A study about a variant that --variant left out is no mistake of the file.
+    for (const TomlNode& study : tables_of(root, "study")) {
+      const TomlNode* name = study.find("name");
+      if (name != nullptr && name->text == claim.metric.substr(6)) decidable = false;
+    }
+  }
+  if (decidable) require_metric(claim.metric, topic, place_of(node, "metric"), names.studies);
+  if (!claim.variant.empty()) {
+    decidable = runs(claim.variant, names, place_of(node, "variant")) && decidable;
+  }
+  if (claim.of) decidable = runs(*claim.of, names, place_of(node, "of")) && decidable;
+  return decidable;
 }
 
 }  // namespace
@@ -193,26 +255,20 @@ std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
     ClaimTable table;
     read_options(plain, "claim", table);
     ClaimSpec claim = claim_of(table, node);
-    require_sides(claim, node);
-    require_own_text(claim, claims, node);
-    Names studies = names.studies;
-    bool decidable = true;
-    if (claim.metric.starts_with("study:") && !contains(studies, claim.metric.substr(6))) {
-      // A study about a variant that --variant left out is no mistake of the file.
-      for (const TomlNode& study : tables_of(root, "study")) {
-        const TomlNode* name = study.find("name");
-        if (name != nullptr && name->text == claim.metric.substr(6)) decidable = false;
-      }
+    read_except(table, node, names, claim);
+    const Names variants = variants_of(table, node, names);
+    if (variants.empty()) continue;
+    claim.variants = table.variants;
+    std::vector<ClaimSpec> made;
+    for (const std::string& variant : variants) {
+      claim.variant = variant;
+      require_sides(claim, node);
+      require_own_claim(claim, claims, node);
+      if (!is_decidable(claim, root, topic, names, node)) continue;
+      made.push_back(claim);
+      complete(made.back(), topic, names, tolerances, decided_studies, node);
     }
-    if (decidable) require_metric(claim.metric, topic, place_of(node, "metric"), studies);
-    require_cases(claim.cases, names, node);
-    if (!claim.variant.empty()) {
-      decidable = runs(claim.variant, names, place_of(node, "variant")) && decidable;
-    }
-    if (claim.of) decidable = runs(*claim.of, names, place_of(node, "of")) && decidable;
-    if (!decidable) continue;
-    complete(claim, topic, names, tolerances, decided_studies, node);
-    claims.push_back(std::move(claim));
+    claims.insert(claims.end(), made.begin(), made.end());
   }
   return claims;
 }

@@ -49,6 +49,8 @@ struct ClaimSpec {
   std::string variant;
   std::optional<std::string> of;  ///< compared with this variant; absent: with `value`
   std::optional<double> value;
+  /// All that the sentence is about: a specification each, of one text. Empty: `variant` alone.
+  std::vector<std::string> variants;
   Comparison is = Comparison::less_equal;
   double factor = 1;
   double offset = 0;
@@ -62,7 +64,8 @@ struct ClaimSpec {
   /// recorded.
   Reduction reduce = Reduction::max;
   std::optional<Reduction> of_reduce;  ///< of the other side; absent: as `reduce`
-  std::vector<std::string> cases;      ///< empty: every case
+  /// Cases in which it is decided but need not hold, and why.
+  std::map<std::string, std::string> except;
   ClaimOver over = ClaimOver::case_;
   /// Variant that must fail the same inequality put in the place of `variant`.
   std::optional<std::string> null;
@@ -98,6 +101,9 @@ struct Experiment {
   std::string figure;
   std::string topic;
   std::filesystem::path file;
+  /// Variant that does nothing: claims are graded between it and theirs. Absent: no variant is of
+  /// the topic's inputs.
+  std::optional<std::string> input;
   bool quick = false;
   std::vector<CaseSpec> cases;
   std::vector<ClaimSpec> claims;

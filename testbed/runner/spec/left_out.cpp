@@ -29,16 +29,9 @@ bool is_grid(const TomlNode& sweep) {
   return grid != nullptr && grid->boolean;
 }
 
-template <class Specs>
-void drop_cases_of(Specs& specs, const std::vector<CaseSpec>& cases) {
-  std::erase_if(specs, [&](auto& spec) {
-    if (spec.cases.empty()) return false;
-    std::erase_if(spec.cases, [&](const std::string& name) {
-      return std::none_of(cases.begin(), cases.end(),
-                          [&](const CaseSpec& made) { return made.name == name; });
-    });
-    return spec.cases.empty();
-  });
+bool is_made(const std::string& name, const std::vector<CaseSpec>& cases) {
+  return std::any_of(cases.begin(), cases.end(),
+                     [&](const CaseSpec& made) { return made.name == name; });
 }
 
 }  // namespace
@@ -63,11 +56,13 @@ KnownNames known_names(const TomlNode& root, const TomlNode& written,
 
 void require_claimed_variants(const TomlNode& root, const std::vector<std::string>& dropped) {
   const auto require = [&](const TomlNode& table, const TomlNode& claim) {
-    for (const char* member : {"variant", "of", "null"}) {
-      const TomlNode* name = table.find(member);
-      if (name == nullptr || !holds(dropped, name->text)) continue;
-      throw Error("quick runs leave variant '" + name->text + "' out", place_of(table, member),
+    const auto require_one = [&](const TomlNode& name, const char* member) {
+      if (!holds(dropped, name.text)) return;
+      throw Error("quick runs leave variant '" + name.text + "' out", place_of(table, member),
                   "`quick = false` of the claim at " + claim.place + ", too");
+    };
+    for (const char* member : {"variant", "of", "null"}) {
+      if (const TomlNode* name = table.find(member)) require_one(*name, member);
     }
   };
   for (const TomlNode& claim : tables_of(root, "claim")) {
@@ -108,11 +103,18 @@ void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped) {
 }
 
 void drop_cases(std::vector<StudySpec>& studies, const std::vector<CaseSpec>& cases) {
-  drop_cases_of(studies, cases);
+  std::erase_if(studies, [&](StudySpec& study) {
+    if (study.cases.empty()) return false;
+    std::erase_if(study.cases, [&](const std::string& name) { return !is_made(name, cases); });
+    return study.cases.empty();
+  });
 }
 
 void drop_cases(std::vector<ClaimSpec>& claims, const std::vector<CaseSpec>& cases) {
-  drop_cases_of(claims, cases);
+  for (ClaimSpec& claim : claims) {
+    std::erase_if(claim.except,
+                  [&](const auto& excepted) { return !is_made(excepted.first, cases); });
+  }
 }
 
 void leave_out_of_view(TomlNode& root, const KnownNames& names,
@@ -125,9 +127,7 @@ void leave_out_of_view(TomlNode& root, const KnownNames& names,
     if (TomlNode* further = view->find(row)) leave_out(*further, "variants", is_dropped);
   }
   leave_out(*view, "cases", [&](const std::string& name) {
-    return holds(names.cases, name) &&
-           std::none_of(cases.begin(), cases.end(),
-                        [&](const CaseSpec& made) { return made.name == name; });
+    return holds(names.cases, name) && !is_made(name, cases);
   });
 }
 

@@ -28,8 +28,8 @@ void require_claimed_variants(const TomlNode& root, const std::vector<std::strin
 /// would only repeat the base case. A grid runs the variants of all of its sweeps.
 void drop_sweeps(TomlNode& root, const std::vector<std::string>& dropped);
 
-/// Forgets cases that `drop_sweeps` took away or that only the full version has; what was only
-/// about them goes too.
+/// Forgets cases that `drop_sweeps` took away or that only the full version has; a study that was
+/// only about them goes too.
 void drop_cases(std::vector<StudySpec>& studies, const std::vector<CaseSpec>& cases);
 void drop_cases(std::vector<ClaimSpec>& claims, const std::vector<CaseSpec>& cases);
 

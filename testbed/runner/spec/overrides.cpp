@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<std::string> kTopLevel{
     "title", "figure", "topic", "id",     "size",      "seed",  "threads",     "scene", "variant",
-    "claim", "sweep",  "study", "timing", "tolerance", "quick", "figure_view", "check"};
+    "claim", "sweep",  "study", "timing", "tolerance", "quick", "figure_view", "check", "input"};
 constexpr std::string_view kKeys =
     "scene.*, seed, threads, timing.*, figure_view.*, variant.<name>.options.*";
 

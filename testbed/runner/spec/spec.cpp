@@ -83,23 +83,48 @@ Json sweep_tables(const TomlNode& root, bool quick) {
   return list;
 }
 
-/// Takes cases that are not made out of the table's `cases`; false when that leaves none.
-bool keep_cases(Json& table, const std::vector<CaseSpec>& cases) {
-  if (!table.contains("cases")) return true;
+/// Takes texts out of the table's list of that name; false when that leaves none of them.
+template <class Keep>
+bool keep_in_list(Json& table, const char* name, Keep keep) {
+  if (!table.contains(name)) return true;
   Json kept = Json::array();
-  for (const Json& name : table["cases"]) {
-    const bool made = std::any_of(cases.begin(), cases.end(),
-                                  [&](const CaseSpec& one) { return name == one.name; });
-    if (made) kept.push_back(name);
+  for (const Json& one : table[name]) {
+    if (keep(one.get<std::string>())) kept.push_back(one);
   }
-  table["cases"] = kept;
+  table[name] = kept;
   return !kept.empty();
+}
+
+/// Takes what is not made out of a table of a claim or a study; false when nothing is left that it
+/// could be about.
+bool keep_what_is_made(Json& table, const Experiment& experiment, const KnownNames& names) {
+  const auto is_case = [&](const std::string& name) {
+    return std::any_of(experiment.cases.begin(), experiment.cases.end(),
+                       [&](const CaseSpec& one) { return name == one.name; });
+  };
+  const auto left_out = [&](const char* member) {
+    return table.contains(member) && has(names.dropped, table[member].get<std::string>());
+  };
+  Json excepted = Json::array();
+  for (Json one : table.value("except", Json::array())) {
+    if (keep_in_list(one, "cases", is_case)) excepted.push_back(one);
+  }
+  table["except"] = excepted;
+  if (excepted.empty()) table.erase("except");
+  if (left_out("null")) table.erase("null");
+  const std::string metric = table.value("metric", "");
+  const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
+  const bool runs =
+      keep_in_list(table, "variants", [&](const auto& name) { return !has(names.dropped, name); });
+  return keep_in_list(table, "cases", is_case) && runs && !no_study && !left_out("variant") &&
+         !left_out("of");
 }
 
 Json resolved_json(const TomlNode& root, const Experiment& experiment, const HeaderTable& header,
                    const CaseSpec& base, const KnownNames& names) {
   Json json = table_json(header);
   json["id"] = experiment.id;
+  if (experiment.input) json["input"] = *experiment.input;
   json["size"] = experiment.quick ? "quick" : "full";
   json["scene"] = Json::parse(base.scene_json);
   json["timing"] = {{"repetitions", experiment.timing_repetitions}};
@@ -120,14 +145,7 @@ Json resolved_json(const TomlNode& root, const Experiment& experiment, const Hea
     Json kept = Json::array();
     for (const TomlNode& node : tables_of(root, key)) {
       Json table = json_of(node);
-      const auto left_out = [&](const char* member) {
-        return table.contains(member) && has(names.dropped, table[member].get<std::string>());
-      };
-      const std::string metric = table.value("metric", "");
-      const bool no_study = metric.starts_with("study:") && !has(names.studies, metric.substr(6));
-      const bool no_case = !keep_cases(table, experiment.cases);
-      if (left_out("null")) table.erase("null");
-      if (!left_out("variant") && !left_out("of") && !no_study && !no_case) kept.push_back(table);
+      if (keep_what_is_made(table, experiment, names)) kept.push_back(table);
     }
     json[key] = kept;
   }
@@ -141,6 +159,25 @@ std::string spec_hash(const std::string& text) {
   const BuildInfo& build = build_info();
   return sha256(text + "\nversion " + build.version + "\ncommit " + build.git_commit +
                 "\ndifference " + build.git_difference + "\n");
+}
+
+/// The variant that does nothing: the one that the file names, or the first of the topic's inputs
+/// that it has.
+std::optional<std::string> input_of(const TomlNode& root, const HeaderTable& header,
+                                    const Topic& topic, const KnownNames& names) {
+  if (header.input) {
+    if (has(names.variants, *header.input)) return header.input;
+    if (has(names.dropped, *header.input)) return std::nullopt;
+    throw Error("there is no variant '" + *header.input + "'", place_of(root, "input"),
+                allowed_names(*header.input, names.variants));
+  }
+  for (const std::string& method : topic.inputs) {
+    for (const TomlNode& node : tables_of(root, "variant")) {
+      const bool runs = has(names.variants, node.find("name")->text);
+      if (runs && node.find("method")->text == method) return node.find("name")->text;
+    }
+  }
+  return std::nullopt;
 }
 
 void read_timing(const TomlNode& root, Experiment& experiment) {
@@ -222,6 +259,7 @@ Experiment load_parsed(const TomlNode& written, const std::filesystem::path& fil
     CaseSpec made = resolve_case(swept, plain, topic, selected);
     if (!made.variants.empty()) experiment.cases.push_back(std::move(made));
   }
+  experiment.input = input_of(root, header, topic, names);
   read_timing(root, experiment);
   experiment.studies = read_studies(root, topic, names);
   drop_cases(experiment.studies, experiment.cases);

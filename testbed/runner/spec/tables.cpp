@@ -24,6 +24,9 @@ void describe(OptionVisitor& v, HeaderTable& t) {
   describe_choice(v, "size", t.size, kSizes, {.doc = "quick in the resolved text of a quick run"});
   v.value("seed", t.seed, {.doc = "seed of every random stream", .min = 0});
   v.value("threads", t.threads, {.doc = "number of threads; 0: all", .min = 0, .max = 1024});
+  v.value("input", t.input,
+          {.doc = "variant that does nothing, from which claims are graded; absent: the first of "
+                  "the topic's inputs"});
 }
 
 void describe(OptionVisitor& v, VariantTable& t) {
@@ -51,12 +54,19 @@ void describe(OptionVisitor& v, SweepTable& t) {
       {.doc = "the sweep's cases decide claims and studies: not blessed, timed again or drawn"});
 }
 
+void describe(OptionVisitor& v, ExceptTable& t) {
+  v.value("cases", t.cases, {.doc = "names of cases", .required = true});
+  v.value("reason", t.reason, {.doc = "why the claim need not hold there", .required = true});
+}
+
 void describe(OptionVisitor& v, ClaimTable& t) {
   v.value("text", t.text, {.doc = "the statement in words", .required = true});
   v.value("metric", t.metric,
           {.doc = "a name of the metric table, timing:<phase>, diagnostic:<name> or study:<name>",
            .required = true});
   v.value("variant", t.variant, {.doc = "variant whose value is judged"});
+  v.value("variants", t.variants,
+          {.doc = "several of them, of which the one nearest to failing speaks"});
   v.value("of", t.of, {.doc = "variant that the claim's variant is compared with"});
   v.value("value", t.value,
           {.doc = "number that the variant is compared with, in the metric's unit"});
@@ -73,7 +83,8 @@ void describe(OptionVisitor& v, ClaimTable& t) {
       {.doc = "one number of all frames, without `at`; every: the claim must hold frame by frame"});
   describe_choice(v, "of_reduce", t.of_reduce, kOfReductions,
                   {.doc = "one number of all frames of the other side; same: as `reduce`"});
-  v.value("cases", t.cases, {.doc = "names of cases; absent: all that have the variants"});
+  describe_list(v, "except", t.except,
+                {.doc = "cases in which the claim is decided, but need not hold"});
   describe_choice(
       v, "over", t.over, kClaimOvers,
       {.doc = "what decides: each case, or 9 of 10 seeds of a case together (at least ten seeds)"});

@@ -24,6 +24,7 @@ struct HeaderTable {
   RunSize size = RunSize::full;
   int seed = 1;
   int threads = 0;
+  std::optional<std::string> input;
 };
 
 struct VariantTable {
@@ -46,10 +47,17 @@ struct SweepTable {
 /// A reduction of the other side: `same`, or one of those that give a number.
 enum class OfReduction { same, max, min, median, p95, p99, mean, sum, last };
 
+/// Cases in which a claim is decided and shown, but need not hold.
+struct ExceptTable {
+  std::vector<std::string> cases;
+  std::string reason;
+};
+
 struct ClaimTable {
   std::string text;
   std::string metric;
   std::optional<std::string> variant;
+  std::vector<std::string> variants;
   std::optional<std::string> of;
   std::optional<double> value;
   Comparison is = Comparison::less_equal;
@@ -59,7 +67,7 @@ struct ClaimTable {
   std::optional<std::string> known_shortfall;
   Reduction reduce = Reduction::max;
   OfReduction of_reduce = OfReduction::same;
-  std::vector<std::string> cases;
+  std::vector<ExceptTable> except;
   ClaimOver over = ClaimOver::case_;
   std::optional<std::string> null;
   bool quick = true;
@@ -105,6 +113,7 @@ struct FigureViewTable {
 void describe(OptionVisitor& v, HeaderTable& t);
 void describe(OptionVisitor& v, VariantTable& t);
 void describe(OptionVisitor& v, SweepTable& t);
+void describe(OptionVisitor& v, ExceptTable& t);
 void describe(OptionVisitor& v, ClaimTable& t);
 void describe(OptionVisitor& v, StudyTable& t);
 void describe(OptionVisitor& v, TimingTable& t);

@@ -38,6 +38,17 @@ enum class Discrimination { unasked, exempt, discriminates, is_void, undecided }
 inline constexpr std::array<std::string_view, 5> kDiscriminations{
     "unasked", "exempt", "discriminates", "void", "undecided"};
 
+/// What a claim comes to in one case. `not_told_apart`: it holds, and so does its null, or the null
+/// has no value there, or there is none.
+enum class ClaimOutcome { holds, falls_short, not_told_apart };
+inline constexpr std::array<std::string_view, 3> kClaimOutcomes{"holds", "falls short",
+                                                                "not told apart"};
+
+/// What a graded mutation changes: the frames, whose metrics are measured anew, or, where the
+/// topology of the two differs or the metric does not follow the frames, the metric's own values.
+enum class Graded { not_graded, frames, values };
+inline constexpr std::array<std::string_view, 3> kGradeds{"no", "frames", "values"};
+
 /// Which x is that of the finer discretisation: a step is smaller, a count larger.
 enum class Finer { smaller, larger };
 inline constexpr std::array<std::string_view, 2> kFiner{"smaller", "larger"};
@@ -55,6 +66,12 @@ inline std::string text_of(Reduction x) {
 }
 inline std::string text_of(Discrimination x) {
   return std::string(kDiscriminations.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(ClaimOutcome x) {
+  return std::string(kClaimOutcomes.at(static_cast<std::size_t>(x)));
+}
+inline std::string text_of(Graded x) {
+  return std::string(kGradeds.at(static_cast<std::size_t>(x)));
 }
 inline std::string text_of(StudyKind x) {
   return std::string(kStudyKinds.at(static_cast<std::size_t>(x)));

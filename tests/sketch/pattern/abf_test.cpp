@@ -18,6 +18,7 @@
 #include "metrics/spacing/pattern_mesh.h"
 #include "models/sketch/flatten/flat_triangles.h"
 #include "models/sketch/flatten/flatten.h"
+#include "models/sketch/pattern/piece_borders.h"
 #include "models/sketch/surface/cut_surface.h"
 #include "tests/core/geometry/shapes.h"
 #include "tests/sketch/pattern/flat_surfaces.h"
@@ -167,6 +168,26 @@ TEST(Abf, AnglesAreNearestAmongThoseOfLayouts) {
         EXPECT_GT(objective(moved), least);
       }
     }
+  }
+}
+
+// An ear of no area: remeshing along a straight border leaves three points of one line.
+TEST(FlattenBaselines, CornersOfTrianglesWithoutAreaStayOnTheirLine) {
+  TriMesh sheet = uneven_plane();
+  sheet.V.row(1) = 0.5 * (sheet.V.row(0) + sheet.V.row(2));  // the line that the ear is put on
+  const Eigen::Index n = sheet.V.rows();
+  sheet.V.conservativeResize(n + 1, Eigen::NoChange);
+  sheet.V.row(n) = 0.75 * sheet.V.row(0) + 0.25 * sheet.V.row(1);
+  sheet.F.conservativeResize(sheet.F.rows() + 1, Eigen::NoChange);
+  const std::vector<int> border = disc_border(uneven_plane(), "sheet");
+  const auto at = std::find(border.begin(), border.end(), 0);
+  const bool ahead = (at + 1 == border.end() ? border.front() : *(at + 1)) == 1;
+  sheet.F.bottomRows(1) << (ahead ? 1 : 0), (ahead ? 0 : 1), static_cast<int>(n);
+  for (const auto& flatten : {baselines()[2], baselines()[3]}) {
+    const Eigen::MatrixX2d points = flatten.flatten(sheet);
+    ASSERT_TRUE(points.allFinite()) << flatten.name;
+    const Eigen::RowVector2d on = 0.75 * points.row(0) + 0.25 * points.row(1);
+    EXPECT_LT((points.row(n) - on).norm(), 1e-12) << flatten.name;
   }
 }
 

@@ -147,13 +147,13 @@ TEST_F(Program, RunRecordsAndDecidesClaims) {
   // only when it is sampled; the bound holds everywhere.
   const json& variant = run_json["cases"][0]["variants"][1];
   EXPECT_LE(variant["summary"]["radius_error.max"]["value"], 0.0384294391935392);
-  EXPECT_THAT(good.err, AllOf(HasSubstr("holds        sixteen corners"),
-                              HasSubstr("claims   1 holds"), HasSubstr("run.h5")));
+  EXPECT_THAT(good.err, AllOf(HasSubstr("holds           sixteen corners"),
+                              HasSubstr("claims   holds in 1"), HasSubstr("run.h5")));
   const Outcome bad =
       run("run toy-circle/disc --no-pictures --set variant.polygon.options.segments=8");
   EXPECT_EQ(bad.code, 1);
-  EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short  sixteen corners"),
-                             HasSubstr("claims   0 hold, 1 falls short")));
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("falls short     sixteen corners"),
+                             HasSubstr("claims   falls short in 1")));
 }
 
 TEST_F(Program, AVariantThatFailsExitsWithOneAndItsFramesAreKept) {
@@ -278,7 +278,12 @@ TEST_F(Program, CheckFailsOnClaimsThatCannot) {
         "[[sweep]]\nkey = \"seed\"\nvalues = [2]\nvariants = [\"exact\", \"polygon\"]\n");
   const Outcome undecided = run("check toy-circle/disc");
   EXPECT_EQ(undecided.code, 1);
-  EXPECT_THAT(undecided.err, HasSubstr("undecided: its null square has no value: "));
+  EXPECT_THAT(undecided.err, HasSubstr("case 'seed=2': is decided here, and was not"));
+  ASSERT_EQ(run("bless toy-circle/disc --reason seeds").code, 0);
+  EXPECT_EQ(run("check toy-circle/disc").code, 0) << "it is told apart in the other case";
+  EXPECT_THAT(run("run toy-circle/disc --no-pictures").err,
+              AllOf(HasSubstr("undecided: its null square has no value: "),
+                    HasSubstr("claims   holds in 1, not told apart in 1")));
 }
 
 TEST_F(Program, NullsAreNeitherTimedNorShownAndClaimsAreListed) {

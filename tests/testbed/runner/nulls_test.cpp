@@ -169,6 +169,87 @@ TEST(Nulls, FurtherVariantsThatPassAreListed) {
   EXPECT_EQ(decided(at_most(2, "n"), run).passed_too, "b, d");
 }
 
+TEST(Nulls, OfAllOthersTheOneThatFailsByLeastIsNearest) {
+  const ClaimSpec claim = at_most(2, "n");
+  const RunRecord run = run_of({measured("a", {1}), measured("b", {1.5}), measured("c", {2.5}),
+                                measured("n", {1e9}), measured("other null", {2.2}, "null")});
+  EXPECT_EQ(decided(claim, run).nearest, "other null") << "a null that diverges is no near one";
+  EXPECT_EQ(decided(claim, run_of({measured("a", {1}), measured("b", {1})})).nearest, "");
+}
+
+RunRecord cases_of_errors(const std::vector<std::pair<double, double>>& own_and_null) {
+  RunRecord run;
+  for (const auto& [own, null] : own_and_null) {
+    const std::string name(1, static_cast<char>('p' + run.cases.size()));
+    run.cases.push_back(case_of({measured("a", {own}), measured("n", {null})}, name));
+  }
+  return run;
+}
+
+std::vector<ClaimRecord> all_decided(const ClaimSpec& claim, const RunRecord& run) {
+  Experiment experiment;
+  experiment.claims = {claim};
+  return decide_claims(experiment, run);
+}
+
+TEST(ClaimOutcomes, EveryCaseThatHasTheSidesIsDecidedWhateverTheNullSays) {
+  RunRecord run = cases_of_errors({{1, 9}, {1, 1}, {5, 9}, {5, 1}, {1, 9}});
+  run.cases[4].variants.erase(run.cases[4].variants.begin());
+  const auto records = all_decided(at_most(2, "n"), run);
+  ASSERT_EQ(records.size(), 4U) << "the last case has no side";
+  EXPECT_EQ(outcome_of(records[0]), ClaimOutcome::holds);
+  EXPECT_EQ(outcome_of(records[1]), ClaimOutcome::not_told_apart);
+  EXPECT_EQ(outcome_of(records[2]), ClaimOutcome::falls_short);
+  EXPECT_EQ(outcome_of(records[3]), ClaimOutcome::falls_short);
+  EXPECT_TRUE(unsound(records).empty()) << "its null fails it in one case";
+  EXPECT_EQ(unsound(all_decided(at_most(2, "n"), cases_of_errors({{1, 1}, {1, 2}}))).size(), 2U);
+}
+
+TEST(ClaimOutcomes, ACaseWithoutTheNullIsNotToldApart) {
+  RunRecord run = cases_of_errors({{1, 9}, {1, 9}});
+  run.cases[1].variants.pop_back();
+  EXPECT_EQ(outcome_of(all_decided(at_most(2, "n"), run).at(1)), ClaimOutcome::not_told_apart);
+}
+
+TEST(ClaimOutcomes, ACaseWhereASideHasNoValueIsNone) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(all_decided(at_most(2, "n"), cases_of_errors({{1, 9}, {none, 9}})).size(), 1U);
+  EXPECT_THROW(all_decided(at_most(2, "n"), cases_of_errors({{none, 9}})), Error);
+  RunRecord seeds = cases_of_errors({{1, 9}, {none, 9}});
+  for (CaseRecord& in : seeds.cases) in.swept["seed"] = in.name;
+  ClaimSpec claim = at_most(2, "n");
+  claim.over = ClaimOver::seed;
+  EXPECT_THROW(all_decided(claim, seeds), Error) << "a seed is not left out";
+}
+
+TEST(ClaimOutcomes, AnExceptedCaseIsDecidedAndShown) {
+  ClaimSpec claim = at_most(2, "n");
+  claim.except = {{"q", "the load is ten times higher"}};
+  const auto records = all_decided(claim, cases_of_errors({{1, 9}, {5, 9}}));
+  EXPECT_EQ(records.at(0).excepted, "");
+  EXPECT_EQ(records.at(1).excepted, "the load is ten times higher");
+  EXPECT_EQ(outcome_of(records[1]), ClaimOutcome::falls_short);
+}
+
+TEST(ClaimOutcomes, OfSeveralVariantsTheOneNearestToFailingSpeaks) {
+  Experiment experiment;
+  for (const char* name : {"a", "b", "c"}) {
+    ClaimSpec claim = at_most(2, "n");
+    claim.variant = name;
+    claim.variants = {"a", "b", "c"};
+    experiment.claims.push_back(claim);
+  }
+  const auto of = [&](double c) {
+    return decide_claims(experiment, run_of({measured("a", {1}), measured("b", {1.9}),
+                                             measured("c", {c}), measured("n", {9})}));
+  };
+  ASSERT_EQ(of(0).size(), 1U) << "one claim, one decision";
+  EXPECT_EQ(of(0)[0].variant, "b");
+  EXPECT_EQ(of(0)[0].passed_too, "") << "the others are what it is about";
+  EXPECT_EQ(of(3)[0].variant, "c");
+  EXPECT_FALSE(of(3)[0].holds);
+}
+
 TEST(Nulls, SlackIsValueOverLimit) {
   const RunRecord run = run_of({measured("a", {1}), measured("n", {9})});
   EXPECT_EQ(slack(decided(at_most(4, "n"), run)), 0.25);
@@ -223,9 +304,10 @@ TEST(SeedClaims, CasesForClaimsOnlyDecideNothingByThemselves) {
   };
   EXPECT_THAT(decided_cases(at_most(2, "n")), testing::ElementsAre("default: error o"));
   EXPECT_THAT(decided_cases(over_seeds()), testing::ElementsAre("default: 3 of 3 "));
-  ClaimSpec named = at_most(2, "n");
-  named.cases = {"seed=2"};
-  EXPECT_THAT(decided_cases(named), testing::ElementsAre("seed=2: error o"));
+  run.cases[1].swept = {{"scene.width", "2"}};
+  EXPECT_THAT(decided_cases(at_most(2, "n")),
+              testing::ElementsAre("default: error o", "seed=2: error o"))
+      << "cases for claims that are no seeds are decided";
 }
 
 TEST(SeedClaims, TheNullFailsInNineOfTen) {
@@ -244,6 +326,14 @@ TEST(SeedClaims, FewerThanTenAreAnErrorOfFullRuns) {
   EXPECT_THROW(decide_claims(experiment, three), Error);
   experiment.quick = true;
   EXPECT_TRUE(decide_claims(experiment, three).at(0).holds);
+  experiment.quick = false;
+  RunRecord beside = values_of_seeds(std::vector<double>(10, 1), std::vector<double>(10, 9));
+  beside.cases.push_back(case_of({measured("a", {3}), measured("n", {9})}, "wide"));
+  beside.cases.back().swept["scene.width"] = "2";
+  const auto decided = decide_claims(experiment, beside);
+  ASSERT_EQ(decided.size(), 2U) << "a case with one seed is decided by it";
+  EXPECT_FALSE(decided[1].holds);
+  EXPECT_THAT(decided[1].detail, HasSubstr("0 of 1 seed; worst: "));
 }
 
 TEST(SeedClaims, ASeedWithoutTheNullLeavesThemUndecided) {

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const std::string kOne(kOutcomeDigits, '1'), kTwo(kOutcomeDigits, '2'), kThree(kOutcomeDigits, '3');
+const std::string kFirst(kOutcomeDigits, '1'), kSecond(kOutcomeDigits, '2'),
+    kThird(kOutcomeDigits, '3');
 
 VariantRecord column(const std::string& name, double error) {
   VariantRecord variant;
@@ -84,35 +85,36 @@ TEST(Outcomes, LeaveOutWhatIsNotBlessedOrDoesNotRepeat) {
 }
 
 TEST(Outcomes, AnotherIsANoticeTwoThatBecameEqualFail) {
-  const Outcomes blessed{{"a", {{"v", kOne}, {"w", kTwo}}}};
+  const Outcomes blessed{{"a", {{"v", kFirst}, {"w", kSecond}}}};
   const auto same = compare_outcomes(blessed, blessed);
   EXPECT_THAT(same.notices, IsEmpty());
   EXPECT_THAT(same.failures, IsEmpty());
-  const auto other = compare_outcomes({{"a", {{"v", kThree}, {"w", kTwo}}}}, blessed);
+  const auto other = compare_outcomes({{"a", {{"v", kThird}, {"w", kSecond}}}}, blessed);
   EXPECT_THAT(other.notices, ElementsAre("outcomes are not those blessed: v (a)"));
   EXPECT_THAT(other.failures, IsEmpty());
   // Both have moved, as on another processor, and are told apart no more.
-  const auto merged = compare_outcomes({{"a", {{"v", kThree}, {"w", kThree}}}}, blessed);
+  const auto merged = compare_outcomes({{"a", {{"v", kThird}, {"w", kThird}}}}, blessed);
   EXPECT_THAT(merged.failures,
               ElementsAre(AllOf(HasSubstr("have become equal"), HasSubstr("v (a), w (a)"))));
-  const auto changed = compare_outcomes({{"a", {{"v", kOne}}}, {"b", {{"v", kTwo}}}}, blessed);
+  const auto changed = compare_outcomes({{"a", {{"v", kFirst}}}, {"b", {{"v", kSecond}}}}, blessed);
   EXPECT_THAT(changed.notices, ElementsAre("outcomes are new (bless to hold them): v (b)"));
   EXPECT_THAT(changed.failures, ElementsAre(HasSubstr("w (a)")));
 }
 
 TEST(Outcomes, ThatWereEqualMayStaySo) {
-  const Outcomes blessed{{"a", {{"v", kOne}, {"w", kOne}}}};
-  EXPECT_THAT(compare_outcomes({{"a", {{"v", kTwo}, {"w", kTwo}}}}, blessed).failures, IsEmpty());
+  const Outcomes blessed{{"a", {{"v", kFirst}, {"w", kFirst}}}};
+  EXPECT_THAT(compare_outcomes({{"a", {{"v", kSecond}, {"w", kSecond}}}}, blessed).failures,
+              IsEmpty());
 }
 
 TEST(Outcomes, StandInTheReferenceALineEach) {
   BlessedSet set;
   set.blessing = {"c1", "first"};
   set.values["n=1"]["v"]["error.max"] = {0.5, "m"};
-  set.outcomes = {{"n=1", {{"v", kOne}, {"w", kOne}}}, {"n=2", {{"v", kTwo}}}};
+  set.outcomes = {{"n=1", {{"v", kFirst}, {"w", kFirst}}}, {"n=2", {{"v", kSecond}}}};
   const std::string text = reference_text({{"quick", set}});
-  EXPECT_THAT(text, HasSubstr("0.5\noutcome n=1 v " + kOne + "\noutcome n=1 w " + kOne +
-                              "\noutcome n=2 v " + kTwo + "\n\nend 4\n"));
+  EXPECT_THAT(text, HasSubstr("0.5\noutcome n=1 v " + kFirst + "\noutcome n=1 w " + kFirst +
+                              "\noutcome n=2 v " + kSecond + "\n\nend 4\n"));
   const Reference read = parse_reference(text, "r.txt");
   EXPECT_EQ(read.at("quick").outcomes, set.outcomes);
   EXPECT_EQ(reference_text(read), text);

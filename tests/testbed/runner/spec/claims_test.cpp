@@ -25,12 +25,56 @@ TEST_F(SpecClaims, ClaimsAreCheckedAgainstMetricsVariantsAndCases) {
   EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\nof = \"polygon\""),
               HasSubstr("both"));
   EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\ncases = [\"x\"]"),
-              HasSubstr("default"));
+              HasSubstr("claim.cases: unknown key"));
+  const std::string whole = "metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\nexcept = ";
+  EXPECT_THAT(claim(whole + "[{ cases = [\"x\"], reason = \"r\" }]"), HasSubstr("default"));
+  EXPECT_THAT(claim(whole + "[{ cases = [\"default\"] }]"), HasSubstr("reason"));
+  EXPECT_THAT(claim(whole + "[{ cases = [\"default\", \"default\"], reason = \"r\" }]"),
+              HasSubstr("excepted twice"));
   EXPECT_THAT(claim("metric = \"radius_error\"\nvariant = \"exact\"\nvalue = 1\nat = 90"),
               HasSubstr("{ angle_deg = 90 }"));
   EXPECT_THAT(claim("metric = \"study:none\"\nvalue = 1"), HasSubstr("unknown study"));
   EXPECT_EQ(claim("metric = \"timing:solve\"\nvariant = \"exact\"\nof = \"polygon\"\nis = \">\""),
             "no error");
+}
+
+TEST_F(SpecClaims, OneSentenceIsAboutSeveralVariants) {
+  const std::string claim = "[[claim]]\ntext = \"t\"\nmetric = \"radius_error\"\nvalue = 1\n";
+  const std::string several = claim + "variants = [\"exact\", \"polygon\"]\n";
+  const Experiment e = load(toy::disc_experiment() + several);
+  ASSERT_EQ(e.claims.size(), 2U) << "a specification each";
+  EXPECT_EQ(e.claims[1].variant, "polygon");
+  EXPECT_EQ(load(e.resolved_toml).claims.size(), 2U);
+  LoadRequest one;
+  one.variants = {"exact"};
+  EXPECT_EQ(load(toy::disc_experiment() + several, one).claims.size(), 1U);
+  const auto error = [&](const std::string& rest) {
+    return error_of(toy::disc_experiment() + claim + rest);
+  };
+  EXPECT_THAT(error("variants = [\"exact\"]\nvariant = \"exact\""),
+              HasSubstr("has both `variant`"));
+  EXPECT_THAT(error("variants = [\"exact\", \"exact\"]"), HasSubstr("names 'exact' twice"));
+  EXPECT_THAT(error("variants = [\"exat\"]"), HasSubstr("did you mean 'exact'"));
+  EXPECT_THAT(error_of(toy::disc_experiment() + several + claim + "variant = \"exact\""),
+              HasSubstr("two claims say 't'"));
+}
+
+TEST_F(SpecClaims, ANumberThatAnotherClaimHasIsRefused) {
+  const auto claim = [](const std::string& text, const std::string& rest) {
+    return "[[claim]]\ntext = \"" + text +
+           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\n" + rest;
+  };
+  const std::string first = toy::disc_experiment() + claim("round", "value = 1\n");
+  EXPECT_THAT(error_of(first + claim("as round", "value = 1\nover = \"seed\"\n")),
+              HasSubstr("'round' claims the same of the same number"));
+  EXPECT_EQ(error_of(first + claim("rounder", "value = 0.5\n")), "no error");
+}
+
+TEST_F(SpecClaims, TheInputIsAVariantOfTheFile) {
+  EXPECT_EQ(load("input = \"polygon\"\n" + toy::disc_experiment()).input, "polygon");
+  EXPECT_EQ(load(toy::disc_experiment()).input, std::nullopt) << "the topic names none";
+  EXPECT_THAT(error_of("input = \"polgon\"\n" + toy::disc_experiment()),
+              HasSubstr("did you mean 'polygon'"));
 }
 
 /// A claim about the polygon, with a null called "square".

@@ -10,46 +10,53 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
 class SpecLeftOut : public SpecTest {};
 
 TEST_F(SpecLeftOut, QuickVersionLeavesOutWhatOnlyTheFullOneHas) {
   const auto claim = [](const std::string& text) {
     return "[[claim]]\ntext = \"" + text +
-           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = " +
+           std::to_string(text.size()) + "\n";
   };
-  const std::string text = toy::disc_experiment() + kSweep + claim("both") +
-                           "cases = [\"segments=8\", \"segments=32\"]\n" + claim("full") +
-                           "cases = [\"segments=32\"]\n" +
-                           "[[sweep]]\nkey = \"seed\"\nvalues = [4]\nquick_values = []\n";
+  const std::string both =
+      "except = [{ cases = [\"segments=8\", \"segments=32\"], reason = \"coarse\" }]\n";
+  const std::string full = "except = [{ cases = [\"segments=32\"], reason = \"fine\" }]\n";
+  const std::string text = toy::disc_experiment() + kSweep + claim("both") + both + claim("whole") +
+                           full + "[[sweep]]\nkey = \"seed\"\nvalues = [4]\nquick_values = []\n";
   EXPECT_EQ(load(text).claims.size(), 2U);
   const Experiment quick = load(text, sized(true));
   EXPECT_THAT(case_names(quick), ElementsAre("default", "segments=8"));
-  ASSERT_EQ(quick.claims.size(), 1U);
-  EXPECT_THAT(quick.claims[0].cases, ElementsAre("segments=8"));
+  ASSERT_EQ(quick.claims.size(), 2U) << "a claim is decided in what there is";
+  EXPECT_THAT(quick.claims[0].except, ElementsAre(Pair("segments=8", "coarse")));
+  EXPECT_TRUE(quick.claims[1].except.empty());
   // What a run writes down of itself can be read again.
   const Experiment again = load(quick.resolved_toml);
   EXPECT_EQ(case_names(again), case_names(quick));
-  EXPECT_EQ(again.claims.size(), 1U);
-  EXPECT_THAT(error_of(text + claim("none") + "cases = [\"segments=9\"]\n", sized(true)),
-              HasSubstr("segments=9"));
+  EXPECT_EQ(again.claims.size(), 2U);
+  EXPECT_EQ(again.claims.at(0).except, quick.claims[0].except);
+  const std::string none = "except = [{ cases = [\"segments=9\"], reason = \"odd\" }]\n";
+  EXPECT_THAT(error_of(text + claim("another") + none, sized(true)), HasSubstr("segments=9"));
 }
 
 TEST_F(SpecLeftOut, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
-  const std::string claim =
-      "[[claim]]\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n";
+  const std::string claim = "[[claim]]\nmetric = \"radius_error\"\nvariant = \"polygon\"\n";
   const std::string seeds = "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\n";
-  const std::string text = toy::disc_experiment() + kSweep + seeds + claim +
-                           "text = \"of seeds\"\nover = \"seed\"\n" + claim +
-                           "text = \"of a case\"\ncases = [\"segments=32\"]\n" + claim +
-                           "text = \"of the file\"\n";
+  const std::string text =
+      toy::disc_experiment() + kSweep + seeds + claim +
+      "text = \"of seeds\"\nvalue = 1\nover = \"seed\"\n" + claim +
+      "text = \"of all but one\"\nvalue = 2\nexcept = [{ cases = [\"segments=32\"], "
+      "reason = \"fine\" }]\n" +
+      claim + "text = \"of the file\"\nvalue = 3\n";
   LoadRequest alone;
   alone.sets = {"sweep=[]"};
   const Experiment one = load(text, alone);
   EXPECT_THAT(case_names(one), ElementsAre("default"));
-  ASSERT_EQ(one.claims.size(), 1U) << "one seed decides no claim over seeds";
-  EXPECT_EQ(one.claims[0].text, "of the file");
-  EXPECT_EQ(load(one.resolved_toml).claims.size(), 1U);
+  ASSERT_EQ(one.claims.size(), 2U) << "one seed decides no claim over seeds";
+  EXPECT_EQ(one.claims[0].text, "of all but one");
+  EXPECT_TRUE(one.claims[0].except.empty());
+  EXPECT_EQ(load(one.resolved_toml).claims.size(), 2U);
   alone.sets = {"sweep=[1]"};
   EXPECT_THAT(error_of(text, alone), HasSubstr("sweeps can only be taken out"));
 }
@@ -57,10 +64,11 @@ TEST_F(SpecLeftOut, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
 TEST_F(SpecLeftOut, QuickVersionLeavesOutClaimsThatItIsTooShortFor) {
   const auto claim = [](const std::string& text, const std::string& more) {
     return "[[claim]]\ntext = \"" + text +
-           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\n" + more;
+           "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\nvalue = " +
+           std::to_string(text.size()) + "\n" + more;
   };
   const std::string text =
-      toy::disc_experiment() + claim("both", "") + claim("long", "quick = false\n");
+      toy::disc_experiment() + claim("both", "") + claim("only long", "quick = false\n");
   EXPECT_EQ(load(text).claims.size(), 2U);
   const Experiment quick = load(text, sized(true));
   ASSERT_EQ(quick.claims.size(), 1U);
