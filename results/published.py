@@ -123,7 +123,7 @@ def build(root):
             "falls short is a finding, explained on the method's page in <code>docs/methods</code>. Times compare "
             "within a run: the machines are shared.</p>")
     return page("geoprior: published numbers", "\n".join([
-        f"<h1>Published numbers of {len(published)} experiments: {outcome_words(claims_of_all)}</h1>", note,
+        f"<h1>Published numbers, {len(published)} experiments: {outcome_words(claims_of_all)}</h1>", note,
         contents(list(published.values())), left_out(len(published) - MOST_ROWS, "experiments"), *sections]))
 
 
