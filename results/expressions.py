@@ -19,7 +19,7 @@ import statistics
 from dataclasses import dataclass
 
 from records import TIMES
-from wording import number, outcome_words, unit_symbol
+from wording import number, unit_symbol
 
 # Unit asked for: (unit of the record, its size in that unit).
 SCALES = {
@@ -197,7 +197,7 @@ def term_value(term, records):
     record = record_named(records, term.experiment)
     match term.words:
         case ["claims"]:
-            return outcome_words(record.claims)
+            return record.claim_words()
         case [name] if name in TEXTS:
             return getattr(record, name)
         case ["study", *rest] if rest:

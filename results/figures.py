@@ -3,7 +3,7 @@
     python3 results/figures.py                        writes what stands between the markers of all pages
     python3 results/figures.py --check                exit code 1 where a page differs from its source,
                                                       or a citation from docs/references.bib
-    python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew
+    python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew, and their pictures
 
 Pages are README.md and docs/**/*.md. A record holds what the pages quote of its run: a new quantity on a page
 needs `--publish` of a run of that experiment.
@@ -15,6 +15,7 @@ from pathlib import Path
 
 import citations
 import pages
+import pictures
 import records
 import runfile
 
@@ -31,12 +32,15 @@ def page_texts(root):
 
 
 def publish(root, run_folders):
-    """Makes the records of the runs anew, with what the pages quote of them."""
-    wanted = [quote for page, text in page_texts(root).items() for quote in pages.quoted(page, text)]
+    """Makes the records of the runs anew, with what the pages quote of them, and the pictures that pages show."""
+    texts = page_texts(root)
+    wanted = [quote for page, text in texts.items() for quote in pages.quoted(page, text)]
     for folder in run_folders:
         run = runfile.read_run(folder)
         quotes = {(variant, quantity) for experiment, variant, quantity in wanted if experiment == run.experiment_id}
         print(records.write_record(root, records.record_of(run, quotes)))
+        for path in pictures.publish(run, texts, root):
+            print(path)
 
 
 def unshown(texts, published):
@@ -50,7 +54,7 @@ def unshown(texts, published):
 def check(root):
     texts, sources = page_texts(root), pages.read_sources(root)
     found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
-    found += unshown(texts, sources.records) + citations.problems(root)
+    found += unshown(texts, sources.records) + pictures.problems(texts, sources.records, root) + citations.problems(root)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
 

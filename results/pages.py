@@ -3,7 +3,7 @@
     <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
-KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID`, `options TOPIC`, or `table`
+KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE]`, `options TOPIC`, or `table`
 followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
 """
 
@@ -63,7 +63,7 @@ def figure_index(records):
     rows = []
     for record in records.values():
         rows.append([f"`{record.experiment_id}`", record.figure or "–", record.sizes,
-                     outcome_words(record.claims),
+                     record.claim_words(),
                      f"`{record.content_sha256[:12]}`", f"`{record.commit[:12]}`"])
     return table(["experiment", "figure", "vertices or triangles", "result", "content_sha256", "commit"], rows)
 
@@ -93,13 +93,13 @@ def headline(record):
     rank = {text: (text not in short, claims[0].null_verdict != "discriminates") for text, claims in by_text.items()}
     chosen = sorted(by_text, key=rank.get)[:max(MOST_HEADLINES, len(short))]
     rows = [[text, *measured(claims)] for text, claims in by_text.items() if text in chosen]
-    return ["", f"*{record.title}.* `{record.command}`: {outcome_words(record.claims)}.", "",
+    return ["", f"*{record.title}.* `{record.command}`: {record.claim_words()}.", "",
             *(table(["claim", "measured", "comes to"], rows) if rows else []), ""]
 
 
 def caption(record):
     """Title, command and verdict, as they stand below a picture."""
-    verdict = outcome_words(record.claims)
+    verdict = record.claim_words()
     for outcome in ("falls short", "not told apart"):
         missed = list(dict.fromkeys(c.text for c in record.claims if c.outcome == outcome))
         verdict += f". {outcome.capitalize()}: {'; '.join(missed)}" if missed else ""
@@ -156,6 +156,8 @@ def block_lines(source, sources):
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
     of_record = {"headline": headline, "claims": claim_list, "figure": caption}
+    if kind == "figure":  # behind the identifier, the file of the run that the picture is
+        argument = argument.partition(" ")[0]
     if kind in of_record:
         return of_record[kind](expressions.record_named(sources.records, argument))
     match kind, bool(argument):

@@ -21,7 +21,7 @@ def verdict(record):
     if not record.claims:
         return "no claims"
     mood = "good" if all_told(record.claims) else "bad"
-    return f'<span class="badge {mood}">{outcome_words(record.claims)}</span>'
+    return f'<span class="badge {mood}">{record.claim_words()}</span>'
 
 
 def contents(published):

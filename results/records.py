@@ -11,9 +11,10 @@ import numpy as np
 
 import tables
 from runfile import Claim, Ratio, RunFileError, Study, write_atomically
-from wording import display_name
+from wording import display_name, outcome_words
 
 SCHEMA_VERSION = 1
+SINCE_EVERY_CASE = 4  # schema of run.h5
 TIMES = ("median", "low", "high", "p95", "whole", "prepare")
 LEVELS = {"claims": 1, "studies": 1, "times": 2, "ratios": 2, "units": 1, "values": 3}  # broken into lines
 REDUCTIONS = {"max": np.nanmax, "min": np.nanmin, "median": np.nanmedian, "mean": np.nanmean,
@@ -128,7 +129,7 @@ def record_of(run, quoted):
         "commit": run.provenance.get("git_commit", "unknown"), "content_sha256": run.content_sha256,
         "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
         "failures": tables.failures(run), "cases": [case.name for case in run.cases],
-        "claims": [published_claim(c) for c in run.claims],
+        "every_case": run.schema_version >= SINCE_EVERY_CASE, "claims": [published_claim(c) for c in run.claims],
         "studies": {s.name: {"kind": s.kind, "quantity": s.quantity, "value": rounded(s.value, 4),
                              "low": rounded(s.low, 4), "high": rounded(s.high, 4)} for s in run.studies},
         "times": {case.name: times_of_case(case) for case in run.cases},
@@ -196,6 +197,12 @@ class Record:
     ratios: dict
     units: dict[str, str]
     values: dict
+    every_case: bool = True  # its claims are decided in every case; false: in cases that were listed by hand
+
+    def claim_words(self):
+        """What its claims come to, and whether its author chose the cases."""
+        by_hand = self.claims and not self.every_case
+        return outcome_words(self.claims) + (", cases listed by hand" if by_hand else "")
 
     def timing_rows(self, case):
         """The rows of the timing table of a case, as `tables.timing_rows` gives them of a run."""
@@ -223,7 +230,7 @@ def read_record(path):
                                            "ratios", "units", "values")}
         empty = np.array([])
         return Record(
-            experiment_id=data["experiment"], **same,
+            experiment_id=data["experiment"], every_case=data.get("every_case", False), **same,
             claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
                            empty, empty, empty) for name, s in data["studies"].items()])

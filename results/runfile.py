@@ -127,8 +127,9 @@ class Claim:
 
     @property
     def outcome(self):
-        """holds, falls short, or not told apart: its null passes too, or has no value."""
-        if not self.holds:
+        """holds, falls short, or not told apart: its null passes too, or has no value, or the interval of its time has
+        equality in it."""
+        if not self.holds and not (self.null_verdict == "undecided" and not self.null):
             return "falls short"
         return "holds" if self.null_verdict in ("discriminates", "exempt", "") else "not told apart"
 
@@ -156,6 +157,7 @@ class Run:
     claims: list[Claim]
     frames_sha256: str = ""  # of frames, events and artifacts only; empty in older runs
     metrics_sha256: str = ""  # of metrics and summaries only; empty in older runs
+    schema_version: int = SCHEMA_VERSION
     view: dict = field(default_factory=dict)  # [figure_view] of the experiment
     force: bool = False  # read whether or not its files are what was recorded
 
@@ -265,7 +267,7 @@ def read_root(folder, file):
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
                        g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))
                  for n, g in by_index(file["study"])],
-        claims=[read_claim(c) for c in file["claims"][()]])
+        claims=[read_claim(c) for c in file["claims"][()]], schema_version=int(attrs["schema_version"]))
     try:
         run.view = tomllib.loads(run.experiment).get("figure_view", {})
     except tomllib.TOMLDecodeError:

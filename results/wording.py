@@ -32,7 +32,9 @@ def printable(text):
 
 
 def null_words(claim):
-    """What a claim's null says of it; empty for runs that knew no nulls."""
+    """What a claim's null says of it, or the clock; empty for runs that knew no nulls."""
+    if claim.null_verdict == "undecided" and not claim.null:
+        return f"undecided on this machine: {claim.null_detail}"
     return {
         "discriminates": f"discriminates: not so with the null {claim.null}: {claim.null_detail}",
         "void": f"not told apart: its null {claim.null} passes too, or as good as: {claim.null_detail}",

@@ -154,8 +154,8 @@ std::string claim_count_text(const std::vector<ClaimRecord>& claims) {
 }
 
 bool all_claims_hold(const RunRecord& record) {
-  return std::all_of(record.claims.begin(), record.claims.end(), [](const ClaimRecord& claim) {
-    return claim.holds || !claim.excepted.empty();
+  return std::none_of(record.claims.begin(), record.claims.end(), [](const ClaimRecord& claim) {
+    return outcome_of(claim) == ClaimOutcome::falls_short && claim.excepted.empty();
   });
 }
 
@@ -179,6 +179,7 @@ std::string null_text(const ClaimRecord& claim) {
       return "void: its null " + claim.null.variant +
              " passes too, or as good as: " + claim.null.detail;
     case Discrimination::undecided:
+      if (is_undecided_time(claim)) return "undecided on this machine: " + claim.null.detail;
       return "undecided: its null " + claim.null.variant + " has no value: " + claim.null.detail;
     case Discrimination::exempt:
       return "needs no null: a time, or an oracle";
@@ -213,7 +214,7 @@ void say_claims(const RunRecord& record, bool all_numbers) {
     say(tinted(verdict, outcome == ClaimOutcome::holds ? Tint::good : Tint::bad) + "  " +
         claim.text + in);
     const std::string grade = grade_text(claim);
-    if (all_numbers || !claim.holds) say(indent + claim.detail);
+    if (all_numbers || outcome != ClaimOutcome::holds) say(indent + claim.detail);
     if (!claim.excepted.empty()) say(indent + "excepted: " + claim.excepted);
     if (all_numbers || !is_sound(claim)) say(indent + null_text(claim));
     if (!grade.empty() && (all_numbers || is_soft(claim))) say(indent + grade);

@@ -11,6 +11,7 @@ import shutil
 import sys
 import tempfile
 import unittest
+import zlib
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -20,6 +21,7 @@ sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
 import expressions  # noqa: E402
 import figures  # noqa: E402
 import pages  # noqa: E402
+import pictures  # noqa: E402
 import published  # noqa: E402
 import records  # noqa: E402
 from report_test import make_run, signed  # noqa: E402
@@ -49,7 +51,7 @@ class CommittedPages(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             root = Path(scratch)
             for folder in ("docs", "experiments", "results/published"):
-                shutil.copytree(REPOSITORY / folder, root / folder, ignore=shutil.ignore_patterns("*.png"))
+                shutil.copytree(REPOSITORY / folder, root / folder)
             expected = []
             for page, text in self.texts.items():
                 for marker in reversed(pages.markers_of(page, text)):
@@ -246,10 +248,82 @@ class Headlines(Scratch):
         data["claims"] += [{"holds": False, "case": "other", "text": "claim 7", "detail": "9 of 10 seeds; worst: x: 9 <= 5"}]
         path.write_text(json.dumps(data), encoding="utf-8")
         lines = pages.headline(records.read_record(path))
-        self.assertIn("7 of 9 claims hold", lines[1])
-        self.assertEqual(lines[5:-1], ["| claim 2 | `2 <= 5 m` | yes |", "| claim 3 | `3 <= 5 m` | yes |",
-                                       "| claim 6 | `6 <= 5 m` | **no** |",
-                                       "| claim 7 | `9 <= 5` (9 of 10 seeds) | **no**, 1 of 2 cases |"])
+        self.assertIn("holds in 7, falls short in 2, cases listed by hand.", lines[1])
+        self.assertEqual(lines[5:-1], ["| claim 2 | `2 <= 5 m` | holds |", "| claim 3 | `3 <= 5 m` | holds |",
+                                       "| claim 6 | `6 <= 5 m` | **falls short** |",
+                                       "| claim 7 | `9 <= 5` (9 of 10 seeds) | **holds in 1, falls short in 1** |"])
+
+    def test_never_say_that_all_hold_where_a_null_passes_or_cases_were_chosen(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        data = json.loads(path.read_text(encoding="utf-8"))
+        claim = {"holds": True, "case": "a", "text": "small", "detail": "x: 1 <= 5", "null": "n",
+                 "null_verdict": "discriminates", "input": "nothing", "graded": "frames", "least": 0.9}
+        data["claims"] = [claim, claim | {"case": "b", "null_verdict": "void"},
+                          claim | {"case": "c", "holds": False, "excepted": "too coarse"},
+                          claim | {"case": "d", "least": 0.55}]
+        data["every_case"] = True
+        path.write_text(json.dumps(data), encoding="utf-8")
+        record = records.read_record(path)
+        words = "holds in 2, falls short in 1 (1 excepted), not told apart in 1; 1 soft"
+        self.assertEqual(record.claim_words(), words)
+        text = "\n".join(pages.claim_list(record))
+        self.assertIn("excepted: too coarse", text)
+        self.assertIn("soft: holds from s = 0.55 on of nothing + s (its variant − nothing), graded by frames", text)
+        data["every_case"] = False
+        path.write_text(json.dumps(data), encoding="utf-8")
+        self.assertEqual(records.read_record(path).claim_words(), words + ", cases listed by hand")
+
+
+class Pictures(Scratch):
+    """A page shows the picture of the published run, under its caption."""
+
+    PAGE = "# Page\n\n![A knee](knee.png)\n\n<!-- begin: figure test/knee -->\n<!-- end -->\n"
+    ONE_PIXEL = pictures.png_of([(b"IHDR", bytes([0, 0, 0, 1, 0, 0, 0, 1, 8, 0, 0, 0, 0])),
+                                 (b"IDAT", zlib.compress(b"\0\x80")), (b"IEND", b"")])
+
+    def setUp(self):
+        super().setUp()
+        (self.run / "figure.png").write_bytes(self.ONE_PIXEL)
+        self.picture = self.root / "docs" / "knee.png"
+        self.publish()
+        self.record = records.record_path(self.root, "test/knee")
+        data = json.loads(self.record.read_text(encoding="utf-8"))
+        self.record.write_text(json.dumps(data | {"every_case": True}), encoding="utf-8")
+        run_figures("--root", self.root)
+
+    def problem(self):
+        code, _, err = run_figures("--root", self.root, "--check")
+        self.assertEqual(code, 1)
+        return err
+
+    def test_are_published_with_the_hash_of_their_run(self):
+        content = self.picture.read_bytes()
+        data = json.loads(self.record.read_text(encoding="utf-8"))
+        self.assertEqual(pictures.stamp_of(content, "knee.png"), data["content_sha256"])
+        self.assertEqual(len(pictures.chunks(content, "knee.png")), 4)
+        again = pictures.stamped(content, "knee.png", data["content_sha256"])
+        self.assertEqual(again, content, "a second stamp takes the place of the first")
+        self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
+
+    def test_of_another_run_or_of_none_are_named(self):
+        self.picture.write_bytes(pictures.stamped(self.ONE_PIXEL, "knee.png", "f" * 64))
+        self.assertRegex(self.problem(), "docs/knee.png: is a picture of run f{12}, the record of test/knee is of ")
+        self.picture.write_bytes(self.ONE_PIXEL)
+        self.assertIn("docs/knee.png: is a picture of no run that it names", self.problem())
+
+    def test_that_are_no_png_are_an_error_with_their_name(self):
+        for content, message in ((b"GIF89a", "is no PNG"), (self.ONE_PIXEL[:-3], "is cut off")):
+            self.picture.write_bytes(content)
+            with self.assertRaisesRegex(RunFileError, f"knee.png: {message}"):
+                run_figures("--root", self.root, "--check")
+
+    def test_of_records_from_before_need_no_hash(self):
+        self.picture.write_bytes(self.ONE_PIXEL)
+        data = json.loads(self.record.read_text(encoding="utf-8"))
+        self.record.write_text(json.dumps(data | {"every_case": False}), encoding="utf-8")
+        run_figures("--root", self.root)
+        self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
 
 
 class Markers(Scratch):

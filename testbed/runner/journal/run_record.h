@@ -153,9 +153,14 @@ struct ClaimRecord {
   GradeRecord grade = {};
 };
 
+/// A claim about a time whose interval does not tell it from equality: it names no null.
+inline bool is_undecided_time(const ClaimRecord& claim) {
+  return claim.null.verdict == Discrimination::undecided && claim.null.variant.empty();
+}
+
 /// What the record says: a claim that falls short does so whatever its null says.
 inline ClaimOutcome outcome_of(const ClaimRecord& claim) {
-  if (!claim.holds) return ClaimOutcome::falls_short;
+  if (!claim.holds && !is_undecided_time(claim)) return ClaimOutcome::falls_short;
   const Discrimination verdict = claim.null.verdict;
   const bool told = verdict == Discrimination::discriminates || verdict == Discrimination::exempt;
   return told ? ClaimOutcome::holds : ClaimOutcome::not_told_apart;

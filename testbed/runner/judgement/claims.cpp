@@ -12,6 +12,8 @@
 #include "testbed/runner/journal/frames_text.h"
 #include "testbed/runner/judgement/judgement.h"
 #include "testbed/runner/judgement/studies.h"
+#include "testbed/runner/judgement/timed_claims.h"
+#include "testbed/runner/number_text.h"
 
 namespace geoprior {
 namespace {
@@ -90,6 +92,18 @@ std::optional<std::string> fallen_short(const VariantRecord& variant, const Vari
   return std::nullopt;
 }
 
+/// A time decides what its interval tells from equality, on the machine that it was taken on.
+void ask_clock(const Interval& margin, Decision& decision) {
+  const std::string interval =
+      "[" + rounded_text(margin.low) + ", " + rounded_text(margin.high) + "]";
+  if (is_decided(margin)) return;
+  NullRecord& record = decision.record.null;
+  record.verdict = Discrimination::undecided;
+  record.detail = std::isnan(margin.low)
+                      ? "a single time has no interval"
+                      : "the margin's 95 % interval " + interval + " has 0 in it";
+}
+
 bool is_about(const ClaimSpec& claim, const std::string& variant) {
   return variant == claim.variant ||
          std::find(claim.variants.begin(), claim.variants.end(), variant) != claim.variants.end();
@@ -133,6 +147,7 @@ Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const Vari
   speak(decision, own.worst());
   ask_others(claim, in, decision);
   ask_null(claim, &own, judge_null, decision);
+  if (claim.exempt == Exemption::timing) ask_clock(timed_margin(claim, in, in.seed), decision);
   return decision;
 }
 
@@ -316,6 +331,12 @@ Decision decide_study(const ClaimSpec& claim, const Experiment& experiment, cons
     return judge_study(claim, studies_of_null(claim, experiment, record, null));
   };
   ask_null(claim, &own, judge_null, decision);
+  if (claim.exempt == Exemption::timing) {
+    const auto study = std::find_if(studies.begin(), studies.end(), [&](const StudyRecord& one) {
+      return "study:" + one.name == claim.metric;
+    });
+    if (study != studies.end()) ask_clock(timed_margin(claim, *study), decision);
+  }
   return decision;
 }
 

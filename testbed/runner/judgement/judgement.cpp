@@ -27,12 +27,6 @@ bool satisfies(const ClaimSpec& claim, double left, double right) {
   throw Error("is no comparison", "claim '" + claim.text + "'");
 }
 
-double margin_of(const ClaimSpec& claim, double left, double right) {
-  if (claim.is == Comparison::equal) return claim.tolerance - std::abs(left - right);
-  const bool below = claim.is == Comparison::less_equal || claim.is == Comparison::less;
-  return below ? right - left : left - right;
-}
-
 /// "0.2 * 3.4e-06 + 1e-9 m^3 (+- 1e-12)".
 std::string right_text(const ClaimSpec& claim, double other, const std::string& unit) {
   std::string text = rounded_text(other);
@@ -121,6 +115,12 @@ const VariantRecord& require_variant(const ClaimSpec& claim, const CaseRecord& i
 }
 
 }  // namespace
+
+double margin_of(const ClaimSpec& claim, double left, double right) {
+  if (claim.is == Comparison::equal) return claim.tolerance - std::abs(left - right);
+  const bool below = claim.is == Comparison::less_equal || claim.is == Comparison::less;
+  return below ? right - left : left - right;
+}
 
 const Judgement::Trial& Judgement::worst() const {
   return *std::min_element(trials.begin(), trials.end(), [](const auto& a, const auto& b) {

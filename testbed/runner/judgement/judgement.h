@@ -26,6 +26,9 @@ struct Judgement {
   [[nodiscard]] bool fails_clearly(const Tolerance& tolerance) const;
 };
 
+/// How far the two sides are from failing the claim; negative when they fail it.
+double margin_of(const ClaimSpec& claim, double left, double right);
+
 /// Puts `variant` in the place of the claim's; `of` stays that of the claim.
 /// @throws Error  when a side has no value, no such frame or phase, or failed
 Judgement judge(const ClaimSpec& claim, const CaseRecord& in, const std::string& variant);

@@ -161,6 +161,51 @@ TEST(Claims, EveryFrameMeansTheWorstFrame) {
   EXPECT_THROW(decide(c, record_of({variant("a", {nan}), variant("b", {4})})), Error);
 }
 
+/// Forty frames of `a` and `b`, of times about `of_a` and `of_b` milliseconds, spread by a tenth.
+ClaimRecord decided_time(double of_a, double of_b, Comparison is = Comparison::less_equal) {
+  RunRecord record = record_of({variant("a", {}), variant("b", {})});
+  for (VariantRecord& one : record.cases[0].variants) {
+    std::vector<std::vector<double>>& solve = one.timing["solve"];
+    solve.clear();
+    for (int i = 0; i < 40; ++i) {
+      one.frames.push_back({double(i), {}});
+      const double spread = 1 + 0.1 * std::sin(one.name == "a" ? 1.7 * i : 2.9 * i + 1);
+      solve.push_back({1e-3 * spread * (one.name == "a" ? of_a : of_b)});
+    }
+  }
+  ClaimSpec c = claim("timing:solve", "b");
+  c.is = is;
+  c.reduce = Reduction::median;
+  c.exempt = Exemption::timing;
+  return decide(c, record);
+}
+
+TEST(Claims, ATimeIsDecidedWhereItsIntervalExcludesEquality) {
+  EXPECT_EQ(outcome_of(decided_time(1, 2)), ClaimOutcome::holds);
+  EXPECT_EQ(outcome_of(decided_time(2, 1)), ClaimOutcome::falls_short);
+  EXPECT_EQ(outcome_of(decided_time(2, 1, Comparison::greater)), ClaimOutcome::holds);
+  for (const double near : {0.995, 1.005}) {
+    const ClaimRecord record = decided_time(near, 1);
+    EXPECT_EQ(outcome_of(record), ClaimOutcome::not_told_apart) << near;
+    EXPECT_THAT(record.null.detail, HasSubstr("has 0 in it"));
+  }
+}
+
+TEST(Claims, ASingleTimeIsUndecided) {
+  ClaimSpec c = claim("timing:prepare", "b");
+  c.exempt = Exemption::timing;
+  RunRecord record = kTwo;
+  for (VariantRecord& one : record.cases[0].variants) {
+    one.timing["prepare"] = {{one.name == "a" ? 1.0 : 9.0}};
+  }
+  EXPECT_EQ(outcome_of(decide(c, record)), ClaimOutcome::not_told_apart);
+  EXPECT_THAT(decide(c, record).null.detail, HasSubstr("a single time has no interval"));
+  for (VariantRecord& one : record.cases[0].variants) {
+    one.timing["prepare"] = {std::vector<double>(5, one.name == "a" ? 1.0 : 9.0)};
+  }
+  EXPECT_EQ(outcome_of(decide(c, record)), ClaimOutcome::holds) << "five repetitions";
+}
+
 TEST(Claims, WhatTheRunDoesNotHaveIsAnErrorAndDoesNotHold) {
   EXPECT_THROW(decide(claim("eror", "b"), kTwo), Error);
   EXPECT_THROW(decide(claim("error", "c"), kTwo), Error);

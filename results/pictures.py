@@ -1,0 +1,106 @@
+"""Pictures of the pages as artefacts of runs: each holds the hash of the run that drew it (PNG text), which is that of
+its experiment's record. A picture belongs to the experiment whose caption (`figure ID`, docs/file-formats.md) is the
+next block below it."""
+
+import re
+import struct
+import zlib
+from pathlib import Path
+
+import pages
+from runfile import RunFileError, require_regular_file, write_atomically
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+KEYWORD = b"geoprior content_sha256"
+SHOWN = re.compile(r"!\[[^]]*\]\(([^)]+\.png)\)")
+
+
+def chunks(content, name):
+    """(kind, data) of each chunk of a PNG. Raises RunFileError naming the file."""
+    if not content.startswith(SIGNATURE):
+        raise RunFileError(f"{name}: is no PNG")
+    out, at = [], len(SIGNATURE)
+    while at < len(content):
+        if at + 8 > len(content):
+            raise RunFileError(f"{name}: is cut off")
+        size, kind = struct.unpack(">I4s", content[at:at + 8])
+        if at + 12 + size > len(content):
+            raise RunFileError(f"{name}: is cut off")
+        out.append((kind, content[at + 8:at + 8 + size]))
+        at += 12 + size
+    return out
+
+
+def png_of(parts):
+    """The bytes of a PNG of these chunks."""
+    return SIGNATURE + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+                                for kind, data in parts)
+
+
+def is_stamp(kind, data):
+    return kind == b"tEXt" and data.startswith(KEYWORD + b"\0")
+
+
+def stamp_of(content, name):
+    """The hash of the run that drew the picture; empty where it holds none."""
+    return next((data[len(KEYWORD) + 1:].decode("latin-1") for kind, data in chunks(content, name)
+                 if is_stamp(kind, data)), "")
+
+
+def stamped(content, name, content_sha256):
+    """The picture with the hash behind its header, in place of one that it holds."""
+    header, *rest = [(kind, data) for kind, data in chunks(content, name) if not is_stamp(kind, data)]
+    return png_of([header, (b"tEXt", KEYWORD + b"\0" + content_sha256.encode("latin-1")), *rest])
+
+
+def owners(texts, root):
+    """path of a picture: (experiment, file of the run that it is) by the captions of all pages."""
+    found = {}
+    for page, text in texts.items():
+        shown = [(m.start(), m[1]) for m in SHOWN.finditer(pages.without_code(text))]
+        for marker in pages.markers_of(page, text):
+            kind, _, argument = marker.source.partition(" ")
+            before = [(at, target) for at, target in shown if at < marker.start]
+            if not (marker.block and kind == "figure" and before):
+                continue
+            at, target = before[-1]
+            if any(at < other.start < marker.start for other in pages.markers_of(page, text) if other.block):
+                continue
+            experiment, _, file = argument.partition(" ")
+            found[(root / page).parent.joinpath(target).resolve()] = (experiment, file or "figure.png")
+    return found
+
+
+def read_picture(path):
+    require_regular_file(path)
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise RunFileError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+def publish(run, texts, root):
+    """Writes the run's pictures that pages show; returns their paths."""
+    written = []
+    for path, (experiment, file) in owners(texts, Path(root).resolve()).items():
+        if experiment == run.experiment_id:
+            drawn = run.folder / file
+            write_atomically(path, stamped(read_picture(drawn), drawn, run.content_sha256))
+            written.append(path)
+    return written
+
+
+def problems(texts, published, root):
+    """One line for every picture that is not of the run that its experiment's record is of. Records from before claims
+    were decided in every case were published without pictures."""
+    out, root = [], Path(root).resolve()
+    for path, (experiment, _) in owners(texts, root).items():
+        record = published.get(experiment)
+        if record is None or not record.every_case:
+            continue
+        stamp = stamp_of(read_picture(path), path)
+        if stamp != record.content_sha256:
+            says = f"of run {stamp[:12]}" if stamp else "of no run that it names"
+            out.append(f"{path.relative_to(root)}: is a picture {says}, the record of {experiment} is of "
+                       f"{record.content_sha256[:12]}")
+    return out
