@@ -111,8 +111,8 @@ void add_outcomes(const BlessedRun& run, const Outcomes& blessed, Verdict& verdi
   append(verdict.failures, difference.failures);
 }
 
-/// A grade is looked for again only around the blessed one: one step above it the claim must hold,
-/// two below it must not.
+/// A grade is looked for again only around the blessed one: there or a step above it the claim must
+/// hold, and not at both of the steps below.
 void check_grades(const CommandContext& context, const BlessedRun& run,
                   const BlessedClaims& blessed, Verdict& verdict) {
   Grader grader(run.experiment, context.topics, run.record, run.folder);
@@ -122,9 +122,12 @@ void check_grades(const CommandContext& context, const BlessedRun& run,
       const BlessedClaim* before = find_claim(blessed, claim);
       if (before == nullptr || before->graded == Graded::not_graded) continue;
       const int step = static_cast<int>(std::lround(before->least * kGradeSteps));
-      const bool above =
-          grader.holds_at(claim, before->graded, std::min(step + 1, kGradeSteps)) == true;
-      const bool below = step >= 2 && grader.holds_at(claim, before->graded, step - 2) == true;
+      const auto holds_at = [&](int at) {
+        return at >= 0 && at <= kGradeSteps && grader.holds_at(claim, before->graded, at) == true;
+      };
+      // A mixture of two that pass may fail.
+      const bool above = holds_at(step) || holds_at(step + 1);
+      const bool below = holds_at(step - 2) && holds_at(step - 1);
       if (above && !below) continue;
       verdict.failures.push_back("claim '" + claim.text + "', case '" + in + "': its grade is " +
                                  (below ? "less" : "more") + " than the blessed one, " +

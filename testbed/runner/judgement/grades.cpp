@@ -33,16 +33,25 @@ double blend(double input, double output, double s) {
   return input == output ? output : input + s * (output - input);
 }
 
+/// The frame of the input that the output's is mixed with: that of equal parameter; the only one of
+/// a shape that does not change; of a method that ends elsewhere, for its last frame the last one.
+std::optional<std::size_t> paired_frame(const VariantRecord& input, const VariantRecord& output,
+                                        std::size_t i) {
+  const int same = frame_of_parameter(input.frames, output.frames[i].parameter);
+  if (same >= 0) return static_cast<std::size_t>(same);
+  if (input.frames.size() == 1) return 0;
+  if (!input.frames.empty() && i + 1 == output.frames.size()) return input.frames.size() - 1;
+  return std::nullopt;
+}
+
 /// One value a frame of the output, mixed with that of the input's frame of equal parameter.
 std::vector<double> blended_column(const VariantRecord& input, const std::vector<double>& of_input,
                                    const VariantRecord& output,
                                    const std::vector<double>& of_output, double s) {
   std::vector<double> mixed(of_output.size(), kNone);
   for (std::size_t i = 0; i < std::min(mixed.size(), output.frames.size()); ++i) {
-    const int same = frame_of_parameter(input.frames, output.frames[i].parameter);
-    if (same >= 0 && static_cast<std::size_t>(same) < of_input.size()) {
-      mixed[i] = blend(of_input[static_cast<std::size_t>(same)], of_output[i], s);
-    }
+    const std::optional<std::size_t> pair = paired_frame(input, output, i);
+    if (pair && *pair < of_input.size()) mixed[i] = blend(of_input[*pair], of_output[i], s);
   }
   return mixed;
 }
@@ -259,11 +268,10 @@ class Grader::Impl {
       throw_if_stopped();
       const double parameter = variant.frames[i].parameter;
       if (!all && !same_parameter(parameter, *sides.claim->at_parameter)) continue;
-      const int same = frame_of_parameter(sides.input->frames, parameter);
-      if (same < 0) throw Error("has no frame of equal parameter", sides.input->name);
-      Frame frame =
-          blended_frame(files_.frame(*sides.input, static_cast<std::size_t>(same)),
-                        files_.frame(*sides.output, i), static_cast<double>(step) / kGradeSteps);
+      const std::optional<std::size_t> pair = paired_frame(*sides.input, variant, i);
+      if (!pair) throw Error("has no frame of equal parameter", sides.input->name);
+      Frame frame = blended_frame(files_.frame(*sides.input, *pair), files_.frame(*sides.output, i),
+                                  static_cast<double>(step) / kGradeSteps);
       if (group.of_sequence) {
         bytes += memory_of(frame);
         if (bytes > kMostBytes) throw Error("is too long to be held in memory", variant.name);

@@ -196,6 +196,39 @@ TEST_F(Grades, DiagnosticsAndStudiesMixValues) {
   EXPECT_EQ(grader.holds_at(decided[2], Graded::values, 14), false);
 }
 
+// A shape that does not change, and a method that ends elsewhere.
+TEST_F(Grades, PairAnInputOfOneFrameWithAllAndLastFramesWithEachOther) {
+  RunRecord record = values_of_cases();
+  record.cases.resize(1);
+  VariantRecord &small = record.cases[0].variants[0], &large = record.cases[0].variants[1];
+  large.diagnostics["work"].values = {10, 20};
+  Experiment experiment;
+  experiment.topic = "toy-circle";
+  experiment.input = "small";
+  ClaimSpec work;
+  work.text = "works";
+  work.metric = "diagnostic:work";
+  work.variant = "large";
+  work.is = Comparison::greater_equal;
+  work.value = 15;
+  work.reduce = Reduction::last;
+  experiment.claims = {work};
+  const std::vector<Topic> topics = toy::topics();
+  const auto grade = [&] {
+    Grader grader(experiment, topics, record, folder());
+    return grader.grade(decide_claims(experiment, record).at(0));
+  };
+  small.frames = {{7, {}}};
+  small.diagnostics["work"].values = {0};
+  EXPECT_DOUBLE_EQ(grade().least, 0.75) << "20 s >= 15";
+  small.frames = {{7, {}}, {8, {}}, {9, {}}};
+  small.diagnostics["work"].values = {0, 0, 10};
+  EXPECT_DOUBLE_EQ(grade().least, 0.5) << "10 + 10 s >= 15";
+  experiment.claims[0].reduce = Reduction::min;
+  experiment.claims[0].value = 9;
+  EXPECT_EQ(grade().least, 0) << "the first frame has no partner: the last alone is mixed";
+}
+
 TEST_F(Grades, NoneWithoutAnInputOrOfIt) {
   Experiment experiment = discs(claim("radius_error", "value = 0.12\n"));
   experiment.claims[0].variant = "small";
