@@ -108,19 +108,17 @@ bool is_whole(const VariantRecord* variant) {
 }
 
 /// The smallest step from which on it holds, when it holds at the last; of frames, whose measures
-/// cost, by bisection.
+/// cost, by bisection. Absent where a mutation on the way has no value.
 template <class HoldsAt>
-int least_step(bool by_bisection, HoldsAt holds_at) {
-  if (!by_bisection) {
-    int least = kGradeSteps;
-    while (least > 0 && holds_at(least - 1)) --least;
-    return least;
-  }
-  if (holds_at(0)) return 0;
-  int fails = 0, holds = kGradeSteps;
+std::optional<int> least_step(bool by_bisection, HoldsAt holds_at) {
+  int fails = -1, holds = kGradeSteps;
   while (holds - fails > 1) {
-    const int middle = (fails + holds) / 2;
-    (holds_at(middle) ? holds : fails) = middle;
+    // The input itself first, then between; without bisection one step after the other.
+    const int next = !by_bisection ? holds - 1 : fails < 0 ? 0 : (fails + holds) / 2;
+    const std::optional<bool> passes = holds_at(next);
+    if (!passes) return std::nullopt;
+    (*passes ? holds : fails) = next;
+    if (next == 0 && *passes) return 0;
   }
   return holds;
 }
@@ -143,16 +141,11 @@ class Grader::Impl {
     if (claim == nullptr || claim->exempt != Exemption::none || !decided.holds) return grade;
     const auto look = [&](Graded of) {
       if (holds_at(decided, of, kGradeSteps) != true) return;
-      try {
-        grade.least = static_cast<double>(least_step(
-                          of == Graded::frames,
-                          [&](int step) { return holds_at(decided, of, step).value(); })) /
-                      kGradeSteps;
-        grade.of = of;
-      } catch (const std::bad_optional_access&) {  // a mutation without a value
-        grade.of = Graded::not_graded;
-        grade.least = kNone;
-      }
+      const std::optional<int> least =
+          least_step(of == Graded::frames, [&](int step) { return holds_at(decided, of, step); });
+      if (!least) return;
+      grade.of = of;
+      grade.least = static_cast<double>(*least) / kGradeSteps;
     };
     if (study_of(*claim, experiment_.studies) != nullptr) {
       grade.input = experiment_.input.value_or("");
@@ -212,13 +205,18 @@ class Grader::Impl {
     Experiment one;
     one.studies = {study};
     RunRecord changed;
+    bool mixed = false;
     for (const CaseRecord& in : record_.cases) {
       const VariantRecord* input = find_variant(in, *experiment_.input);
       const VariantRecord* output = find_variant(in, study.variant);
-      const bool both = is_whole(input) && is_whole(output);
+      const bool named = study.cases.empty() || std::find(study.cases.begin(), study.cases.end(),
+                                                          in.name) != study.cases.end();
+      const bool both = named && is_whole(input) && is_whole(output) && input != output;
+      mixed = mixed || both;
       changed.cases.push_back(
           both ? with_variant(in, blended_values(*input, *output, study.quantity, s)) : in);
     }
+    if (!mixed) throw Error("no case has the input", "study '" + study.name + "'");
     return judge_study(claim, make_studies(one, changed)).holds();
   }
 

@@ -161,17 +161,22 @@ RunRecord values_of_cases() {
   return record;
 }
 
-TEST_F(Grades, DiagnosticsAndStudiesMixValues) {
-  const RunRecord record = values_of_cases();
-  Experiment experiment;
-  experiment.topic = "toy-circle";
-  experiment.input = "small";
+ClaimSpec works_at_least(double value) {
   ClaimSpec work;
   work.text = "works";
   work.metric = "diagnostic:work";
   work.variant = "large";
   work.is = Comparison::greater_equal;
-  work.value = 13;
+  work.value = value;
+  return work;
+}
+
+TEST_F(Grades, DiagnosticsAndStudiesMixValues) {
+  const RunRecord record = values_of_cases();
+  Experiment experiment;
+  experiment.topic = "toy-circle";
+  experiment.input = "small";
+  const ClaimSpec work = works_at_least(13);
   StudySpec study;
   study.name = "growth";
   study.variant = "large";
@@ -205,12 +210,7 @@ TEST_F(Grades, PairAnInputOfOneFrameWithAllAndLastFramesWithEachOther) {
   Experiment experiment;
   experiment.topic = "toy-circle";
   experiment.input = "small";
-  ClaimSpec work;
-  work.text = "works";
-  work.metric = "diagnostic:work";
-  work.variant = "large";
-  work.is = Comparison::greater_equal;
-  work.value = 15;
+  ClaimSpec work = works_at_least(15);
   work.reduce = Reduction::last;
   experiment.claims = {work};
   const std::vector<Topic> topics = toy::topics();
