@@ -39,7 +39,8 @@ def null_words(claim):
         "discriminates": f"discriminates: not so with the null {claim.null}: {claim.null_detail}",
         "void": f"not told apart: its null {claim.null} passes too, or as good as: {claim.null_detail}",
         "undecided": f"not told apart: its null {claim.null} has no value: {claim.null_detail}",
-        "exempt": "needs no null: a time, or an oracle",
+        "exempt": f"needs no null: a time; {claim.null_detail}" if claim.null_detail else
+                  "needs no null: a time, or an oracle",
         "unasked": "names no null: nothing says that it can fail",
     }.get(claim.null_verdict, "")
 

@@ -182,6 +182,7 @@ std::string null_text(const ClaimRecord& claim) {
       if (is_undecided_time(claim)) return "undecided on this machine: " + claim.null.detail;
       return "undecided: its null " + claim.null.variant + " has no value: " + claim.null.detail;
     case Discrimination::exempt:
+      if (!claim.null.detail.empty()) return "needs no null: a time; " + claim.null.detail;
       return "needs no null: a time, or an oracle";
     case Discrimination::unasked:
       break;

@@ -93,15 +93,14 @@ std::optional<std::string> fallen_short(const VariantRecord& variant, const Vari
 }
 
 /// A time decides what its interval tells from equality, on the machine that it was taken on.
-void ask_clock(const Interval& margin, Decision& decision) {
-  const std::string interval =
-      "[" + rounded_text(margin.low) + ", " + rounded_text(margin.high) + "]";
-  if (is_decided(margin)) return;
+void ask_clock(const Interval& margin, const std::string& unit, Decision& decision) {
   NullRecord& record = decision.record.null;
-  record.verdict = Discrimination::undecided;
-  record.detail = std::isnan(margin.low)
-                      ? "a single time has no interval"
-                      : "the margin's 95 % interval " + interval + " has 0 in it";
+  record.detail = "a single time, which has no interval";
+  if (!std::isnan(margin.low)) {
+    record.detail = "margin " + rounded_text(margin.value, 3) + unit + ", 95 % interval [" +
+                    rounded_text(margin.low, 3) + ", " + rounded_text(margin.high, 3) + "]" + unit;
+  }
+  if (!is_decided(margin)) record.verdict = Discrimination::undecided;
 }
 
 bool is_about(const ClaimSpec& claim, const std::string& variant) {
@@ -147,7 +146,8 @@ Decision decide_in_case(const ClaimSpec& claim, const CaseRecord& in, const Vari
   speak(decision, own.worst());
   ask_others(claim, in, decision);
   ask_null(claim, &own, judge_null, decision);
-  if (claim.exempt == Exemption::timing) ask_clock(timed_margin(claim, in, in.seed), decision);
+  if (claim.exempt == Exemption::timing)
+    ask_clock(timed_margin(claim, in, in.seed), " s", decision);
   return decision;
 }
 
@@ -335,7 +335,7 @@ Decision decide_study(const ClaimSpec& claim, const Experiment& experiment, cons
     const auto study = std::find_if(studies.begin(), studies.end(), [&](const StudyRecord& one) {
       return "study:" + one.name == claim.metric;
     });
-    if (study != studies.end()) ask_clock(timed_margin(claim, *study), decision);
+    if (study != studies.end()) ask_clock(timed_margin(claim, *study), "", decision);
   }
   return decision;
 }
