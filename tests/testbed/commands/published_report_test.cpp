@@ -53,8 +53,9 @@ TEST_F(PublishedReport, IsAPageOfWhatTheRecordsSay) {
   const fs::path page = home_.root() / "results/runs/published.html";
   EXPECT_THAT(outcome.out, HasSubstr("{\n  \"report\": \"" + page.string() + "\"\n}"));
   const std::string text = Home::read(page);
-  for (const char* shown : {"A &lt;disc&gt;", "Thesis Figure 9.9", "Published numbers, 1 experiments: falls short",
-                            "it is round", "3 &lt;= 2 m", "4.00 ms", "12.50 m²", "16 vertices"}) {
+  for (const char* shown :
+       {"A &lt;disc&gt;", "Thesis Figure 9.9", "Published numbers, 1 experiments: falls short",
+        "it is round", "3 &lt;= 2 m", "4.00 ms", "12.50 m²", "16 vertices"}) {
     EXPECT_THAT(text, HasSubstr(shown));
   }
 }
