@@ -106,7 +106,7 @@ def check_frame(folder, run):
 
 
 def check_numbers(folder, run):
-    assert run.attrs["schema_version"] == 3 and run.attrs["quick"] == 0
+    assert run.attrs["schema_version"] == 4 and run.attrs["quick"] == 0
     assert isinstance(run.attrs["experiment"], str) and "toy-pendulum" in run.attrs["experiment"]
     for name in ["git_commit", "compiler", "flags", "instruction_set", "cpu", "start", "library_VTK"]:
         assert isinstance(run.attrs[name], str), name

@@ -182,10 +182,16 @@ TEST_F(PlantedOptions, AreTurnedWhereAStoredValueDiffers) {
 }
 
 TEST_F(PlantedOptions, AreTurnedByTheNullOfAClaim) {
-  add("[[variant]]\nname = \"rough\"\nmethod = \"polygon\"\nrole = \"null\"\n"
+  const Experiment experiment = planted(
+      "[[variant]]\nname = \"rough\"\nmethod = \"polygon\"\nrole = \"null\"\n"
       "options = { segments = 4 }\n[[claim]]\ntext = \"t\"\nmetric = \"radius_error\"\n"
-      "variant = \"base\"\nvalue = 0.1\nnull = \"rough\"\n",
-      {});
+      "variant = \"base\"\nvalue = 0.1\nnull = \"rough\"\n");
+  BlessedSet blessed;
+  blessed.claims["t"]["default"].outcome = ClaimOutcome::not_told_apart;
+  turned_.add(experiment, &blessed);
+  EXPECT_THAT(text_of("polygon", "segments"), HasSubstr("no outcome is blessed"));
+  blessed.claims["t"]["default"].outcome = ClaimOutcome::holds;
+  turned_.add(experiment, &blessed);
   EXPECT_THAT(text_of("polygon", "segments"), HasSubstr("turned in"));
 }
 
