@@ -200,7 +200,7 @@ std::string grade_text(const ClaimRecord& claim) {
             " + s (" + (claim.variant.empty() ? "its variant" : claim.variant) + " - " +
             claim.grade.input + ")";
   }
-  return text + ", of " + text_of(claim.grade.of);
+  return text + ", graded by " + text_of(claim.grade.of);
 }
 
 void say_claims(const RunRecord& record, bool all_numbers) {

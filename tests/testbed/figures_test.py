@@ -70,7 +70,7 @@ class CommittedPages(unittest.TestCase):
 
     def test_gallery_and_numbers_have_every_figure_of_the_thesis(self):
         for page, block in (("docs/gallery.md", "figure"), ("docs/figures.md", "headline")):
-            shown = {marker.source for marker in pages.markers_of(page, self.texts[page])}
+            shown = {" ".join(marker.source.split(" ")[:2]) for marker in pages.markers_of(page, self.texts[page])}
             for record in self.sources.records.values():
                 if record.figure:
                     self.assertIn(f"{block} {record.experiment_id}", shown)

@@ -206,6 +206,9 @@ Decision over_seeds(const std::vector<Decision>& seeds, const Cases& group) {
   record.detail = std::to_string(held) + " of " + std::to_string(seeds.size()) +
                   (seeds.size() == 1 ? " seed; worst: " : " seeds; worst: ") + worst->record.detail;
   record.null = null_over(seeds);
+  for (const Decision& seed : seeds) {  // naming one of its seeds excepts the case
+    if (record.excepted.empty()) record.excepted = seed.record.excepted;
+  }
   all.passed_too = that_mostly_pass(seeds, group);
   return all;
 }

@@ -231,6 +231,24 @@ TEST(ClaimOutcomes, AnExceptedCaseIsDecidedAndShown) {
   EXPECT_EQ(outcome_of(records[1]), ClaimOutcome::falls_short);
 }
 
+TEST(ClaimOutcomes, ACaseIsExceptedWhicheverOfItsSeedsIsNamedAndSpeaks) {
+  std::vector<double> own(10, 1);
+  own[3] = 5;
+  own[4] = 5;
+  RunRecord run;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    run.cases.push_back(
+        case_of({measured("a", {own[i]}), measured("n", {9})}, "seed=" + std::to_string(i)));
+    run.cases.back().swept["seed"] = std::to_string(i);
+  }
+  ClaimSpec claim = at_most(2, "n");
+  claim.over = ClaimOver::seed;
+  claim.except = {{"seed=0", "too coarse"}};
+  const auto records = all_decided(claim, run);
+  EXPECT_EQ(outcome_of(records.at(0)), ClaimOutcome::falls_short);
+  EXPECT_EQ(records[0].excepted, "too coarse") << "the seed that speaks is another";
+}
+
 TEST(ClaimOutcomes, OfSeveralVariantsTheOneNearestToFailingSpeaks) {
   Experiment experiment;
   for (const char* name : {"a", "b", "c"}) {
