@@ -124,14 +124,14 @@ TEST_F(BlessedClaimsOfProgram, AnExceptedCaseMayFallShort) {
 }
 
 TEST_F(BlessedClaimsOfProgram, ALimitFarFromTheValueNeedsAReason) {
-  // The polygons of 8, 16 and 32 come to 0.08, 0.02 and 0.005 of the radius.
-  write("value = 0.5\nnull = \"half\"\n");
+  // Of the radius 2 the polygon of 8, the worst, is off by 0.15, the half disc by more than 1.
+  write("value = 1\nnull = \"half\"\n");
   const toy::Outcome refused = home_.run("bless toy-circle/disc --reason first");
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("disc.toml"), HasSubstr("'round' is held by"),
                                           HasSubstr("5 times at most")));
   EXPECT_FALSE(std::filesystem::exists(home_.root() / "results/reference/toy-circle/disc.txt"));
-  write("value = 0.5\nnull = \"half\"\nslack = \"half a disc is far\"\n");
+  write("value = 1\nnull = \"half\"\nslack = \"half a disc is far\"\n");
   EXPECT_EQ(home_.run("bless toy-circle/disc --reason first").code, 0);
 }
 
