@@ -17,7 +17,6 @@ STILL_BARE = {
     "docs/methods/embryo.md": 5,
     "docs/methods/fluid.md": 103,
     "docs/methods/grammar.md": 19,
-    "docs/methods/paper.md": 261,
     "docs/methods/sketch.md": 103,
     "docs/methods/skinning.md": 52,
     "docs/methods/sound.md": 159,
