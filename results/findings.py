@@ -15,12 +15,10 @@ STILL_BARE = {
     "docs/methods/assembly.md": 10,
     "docs/methods/details.md": 25,
     "docs/methods/embryo.md": 5,
-    "docs/methods/fluid.md": 103,
     "docs/methods/grammar.md": 19,
     "docs/methods/paper.md": 261,
     "docs/methods/sketch.md": 103,
     "docs/methods/skinning.md": 52,
-    "docs/methods/sound.md": 159,
     "docs/methods/torus.md": 26,
 }
 
