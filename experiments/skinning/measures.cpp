@@ -204,22 +204,27 @@ std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured&
   return overlaps;
 }
 
-Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference) {
-  const std::optional<OverlapStudy> own = overlap_excess(shared, m);
-  const std::optional<OverlapStudy> other = overlap_excess(shared, reference);
-  if (!own || !other) return std::nullopt;
-  return own->ratio_to(*other);
+std::optional<OverlapRatios> overlap_excess_ratios(Shared& shared, const Measured& m,
+                                                   const Measured& reference) {
+  const auto ratio = [&](const JointRegion* region) -> Value {
+    const std::optional<OverlapStudy> own = excess(shared, m, region);
+    const std::optional<OverlapStudy> other = excess(shared, reference, region);
+    if (!own || !other) return std::nullopt;
+    return own->ratio_to(*other);
+  };
+  const Value body = ratio(nullptr);
+  if (!body) return std::nullopt;
+  return OverlapRatios{ratio(m.region()).value(), *body};
 }
 
-PairsExcess pairs_excess(Shared& shared, const Measured& m) {
-  const auto count = [&](const Eigen::MatrixX3d& V) -> PairsExcess {
-    const auto pairs = pairs_of(shared, m.mesh(), V);
-    const auto all = static_cast<int>(pairs->size());
-    return {m.region() ? pairs_in_region(*pairs, *m.region()) : all, all};
+Pairs pairs(Shared& shared, const Measured& m) {
+  const auto posed = pairs_of(shared, m.mesh(), m.posed);
+  const auto rest = pairs_of(shared, m.mesh(), m.mesh().V);
+  const auto in_region = [&](const TrianglePairList& all) {
+    return m.region() ? pairs_in_region(all, *m.region()) : static_cast<int>(all.size());
   };
-  const PairsExcess posed = count(m.posed);
-  const PairsExcess rest = count(m.mesh().V);
-  return {posed.region - rest.region, posed.body - rest.body};
+  return {in_region(*posed), in_region(*rest), static_cast<int>(posed->size()),
+          static_cast<int>(rest->size())};
 }
 
 std::optional<RoughnessMeasures> roughness(Shared& shared, const Measured& m) {

@@ -76,8 +76,14 @@ Value volume_change_union_body(Shared& shared, const Measured& m);
 std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);
 /// The same of the whole body.
 std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m);
-/// 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
-Value overlap_excess_ratio(Shared& shared, const Measured& m, const Measured& reference);
+/// Each 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
+struct OverlapRatios {
+  double box = 0;   ///< about the region's joints; of the whole body without a region
+  double body = 0;  ///< of the whole body
+};
+/// Absent for an open mesh.
+std::optional<OverlapRatios> overlap_excess_ratios(Shared& shared, const Measured& m,
+                                                   const Measured& reference);
 
 /// Overlaps of all regions of the motion.
 struct RegionOverlaps {
@@ -89,12 +95,14 @@ struct RegionOverlaps {
 /// Absent without a region or for an open mesh.
 std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured& m);
 
-/// Intersecting pairs above rest.
-struct PairsExcess {
+/// Intersecting pairs of triangles, posed and at rest.
+struct Pairs {
   int region = 0;  ///< one of the two in the first region; anywhere without one
+  int region_at_rest = 0;
   int body = 0;
+  int body_at_rest = 0;
 };
-PairsExcess pairs_excess(Shared& shared, const Measured& m);
+Pairs pairs(Shared& shared, const Measured& m);
 
 /// Folds and lumps over the regions of the motion (the whole body without one) and over their outer
 /// halves (absent where no hinge bends about a single axis).

@@ -127,23 +127,35 @@ MetricGroup region_overlaps_group(const SharedPtr& shared) {
 
 MetricGroup overlap_ratio_group(const SharedPtr& shared) {
   return against_reference([shared](const Measured& m, const Measured& reference) {
-           return overlap_excess_ratio(*shared, m, reference);
+           return overlap_excess_ratios(*shared, m, reference);
          })
       .row("overlap_excess_ratio", "1",
            "0 where overlap_excess_raw does not exceed the noise floor, else over that of the "
            "reference variant or the floor, whichever is larger",
-           kLow, kRatio);
+           kLow, kRatio, &OverlapRatios::box)
+      .row(
+          "overlap_excess_ratio_body", "1",
+          "of overlap_excess_body, as overlap_excess_ratio: overlaps that the region's box cuts or "
+          "misses count too",
+          kLow, kRatio, &OverlapRatios::body);
 }
 
+/// Both numbers, no difference: pairs that go away in a pose would hide as many that come.
 MetricGroup pairs_group(const SharedPtr& shared) {
-  return of_frame([shared](const Measured& m) { return pairs_excess(*shared, m); })
-      .row("intersecting_pairs", "1",
-           "pairs of triangles that intersect, at least one of them in the region "
-           "(anywhere without a region), minus the same at rest",
-           kLow, kPairs, &PairsExcess::region)
-      .row("intersecting_pairs_body", "1",
-           "pairs of triangles of the whole body that intersect, minus the same at rest", kLow,
-           kPairs, &PairsExcess::body);
+  return of_frame([shared](const Measured& m) { return pairs(*shared, m); })
+      .row(
+          "intersecting_pairs", "1",
+          "pairs of triangles that intersect, at least one of them in the region (anywhere without "
+          "a region)",
+          kLow, kPairs, &Pairs::region)
+      .row("intersecting_pairs_at_rest", "1",
+           "intersecting_pairs of the rest pose: the same in every frame", Direction::none, kPairs,
+           &Pairs::region_at_rest)
+      .row("intersecting_pairs_body", "1", "pairs of triangles of the whole body that intersect",
+           kLow, kPairs, &Pairs::body)
+      .row("intersecting_pairs_body_at_rest", "1",
+           "intersecting_pairs_body of the rest pose: the same in every frame", Direction::none,
+           kPairs, &Pairs::body_at_rest);
 }
 
 /// Rows of one part of the skin.

@@ -56,12 +56,27 @@ class BentTube : public ::testing::Test {
 
 TEST_F(BentTube, RestFrameHasNothingToReport) {
   const Frame rest = posed(0);
-  for (const char* name :
-       {"volume_change", "volume_change_global", "overlap_excess", "overlap_excess_raw",
-        "intersecting_pairs", "rest_identity", "volume_change_union", "volume_change_union_body",
-        "overlap_excess_body", "overlap_excess_largest", "overlap_excess_sum",
-        "overlap_excess_outside", "overlap_cut_area", "intersecting_pairs_body", "roughness_max",
-        "roughness_max_outer", "lumps_max", "lumps_rms_outer", "harm"}) {
+  for (const char* name : {"volume_change",
+                           "volume_change_global",
+                           "overlap_excess",
+                           "overlap_excess_raw",
+                           "intersecting_pairs",
+                           "rest_identity",
+                           "volume_change_union",
+                           "volume_change_union_body",
+                           "overlap_excess_body",
+                           "overlap_excess_largest",
+                           "overlap_excess_sum",
+                           "overlap_excess_outside",
+                           "overlap_cut_area",
+                           "intersecting_pairs_body",
+                           "intersecting_pairs_at_rest",
+                           "intersecting_pairs_body_at_rest",
+                           "roughness_max",
+                           "roughness_max_outer",
+                           "lumps_max",
+                           "lumps_rms_outer",
+                           "harm"}) {
     EXPECT_NEAR(value(name, rest).value(), 0, 1e-12) << name;  // weights that sum to 1 by round-off
   }
   for (const char* name : {"mid_ring_min", "mid_ring_max", "section_shrink", "area_ratio_p05"}) {
@@ -165,6 +180,38 @@ TEST_F(BentTube, OverlapBelowTheFloorCountsAsNone) {
   // Against a reference without overlap, its floor is what counts.
   EXPECT_GT(value("overlap_excess_ratio", deep, &shallow).value(), 100);
   EXPECT_FALSE(value("overlap_excess_ratio", deep).has_value());
+}
+
+TEST_F(BentTube, OverlapOfTheBodyOverThatOfTheReference) {
+  // The box of the region cuts the overlap at 150 degrees, so that the two ratios differ.
+  const Frame deep = posed(5);
+  const Frame half = posed(4);
+  EXPECT_DOUBLE_EQ(value("overlap_excess_ratio_body", deep, &deep).value(), 1);
+  EXPECT_NEAR(value("overlap_excess_ratio_body", deep, &half).value(),
+              value("overlap_excess_raw_body", deep).value() /
+                  value("overlap_excess_raw_body", half).value(),
+              1e-9);
+  EXPECT_GT(value("overlap_excess_ratio_body", deep, &half).value(),
+            1.02 * value("overlap_excess_ratio", deep, &half).value());
+  EXPECT_FALSE(value("overlap_excess_ratio_body", deep).has_value());
+}
+
+TEST_F(BentTube, PairsOfThePoseAndAtRestAreTwoNumbers) {
+  // A sliver through the tube's wall at rest, far from the region; in the pose it is taken out. The
+  // number of the pose does not go below zero, and that at rest stays.
+  Eigen::MatrixX3d& V = scene.rig.mesh.V;
+  int pulled = 0;
+  V.col(0).minCoeff(&pulled);
+  const Eigen::RowVector3d apart = V.row(pulled);
+  Frame clear = posed(0);
+  V.row(pulled) = Eigen::RowVector3d(apart.x() + 0.3, 0.03, 0.4);  // through the wall at r = 0.1
+  const double at_rest = value("intersecting_pairs_body", posed(0)).value();
+  EXPECT_GT(at_rest, 0);
+  EXPECT_EQ(value("intersecting_pairs_body", clear).value(), 0);
+  EXPECT_EQ(value("intersecting_pairs_body_at_rest", clear).value(), at_rest);
+  EXPECT_EQ(value("intersecting_pairs_body_at_rest", posed(5)).value(), at_rest);
+  EXPECT_GT(value("intersecting_pairs_body", posed(5)).value(), at_rest);
+  EXPECT_EQ(value("intersecting_pairs_at_rest", clear).value(), 0);  // none of them in the region
 }
 
 TEST_F(BentTube, DistanceIsToTheReferenceFrame) {
