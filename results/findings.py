@@ -14,7 +14,6 @@ from pages import BLOCK, INLINE, PLACEHOLDER, line_of, without_code
 STILL_BARE = {
     "docs/methods/fluid.md": 103,
     "docs/methods/paper.md": 261,
-    "docs/methods/skinning.md": 52,
     "docs/methods/sound.md": 159,
 }
 
