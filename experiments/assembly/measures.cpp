@@ -408,6 +408,9 @@ std::optional<CoverageMeasures> coverage_measures(const AssemblyScene& scene, co
     out.false_pairs += are_theirs ? std::max(0., count - of_all.first) : count;
   }
   out.false_substructures = static_cast<double>(found.size()) - there;
+  // Rows, not sets: what is listed twice is one too many.
+  out.substructure_errors =
+      static_cast<double>(all.size()) - there + (static_cast<double>(mine->rows.rows()) - there);
   if (!all.empty()) out.substructures = there / static_cast<double>(all.size());
   if (scene.input.survey->pairs && pairs > 0) out.pairs = pairs_there / pairs;
   const auto keys = [](const Frame& f) {

@@ -80,6 +80,7 @@ std::optional<SurveyMeasures> survey_measures(const AssemblyScene& scene, const 
 struct CoverageMeasures {
   Value substructures, pairs, outputs;  ///< shares of the reference's that are there
   double false_substructures = 0, false_pairs = 0, false_outputs = 0;
+  double substructure_errors = 0;  ///< what is missing, or listed and not the reference's, or again
 };
 std::optional<CoverageMeasures> coverage_measures(const AssemblyScene& scene, const Frame& frame,
                                                   const Frame& reference);

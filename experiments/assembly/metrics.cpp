@@ -150,7 +150,11 @@ MetricGroup coverage_group() {
       .row("false_replacements", "1", "replacements that the reference variant does not make", kLow,
            kExact, [](const M& m) { return m.false_pairs; })
       .row("false_outputs", "1", "distinct assemblies that the reference variant does not make",
-           kLow, kExact, [](const M& m) { return m.false_outputs; });
+           kLow, kExact, [](const M& m) { return m.false_outputs; })
+      .row("substructure_errors", "1",
+           "substructures of the reference variant that are not listed, and rows of the list that "
+           "are none of its substructures, or one that is listed already: 0 for the same set",
+           kLow, kExact, [](const M& m) { return m.substructure_errors; });
 }
 
 }  // namespace

@@ -118,6 +118,14 @@ MetricGroup change_group() {
       .row("altered_errors", "1",
            "altered structures that are not expected, and expected that are not", kLow, kCount,
            [](const M& m) { return m.altered_errors; })
+      .row("change_errors", "1",
+           "absent_errors and altered_errors together: 0 where the list says each structure that "
+           "changes, and how",
+           kLow, kCount,
+           [](const M& m) -> std::optional<double> {
+             if (!m.absent_errors || !m.altered_errors) return {};
+             return *m.absent_errors + *m.altered_errors;
+           })
       .row("other_side_changes", "1",
            "structures of the side that a one-sided disease is not of that differ from the "
            "reference's in a bit some day",

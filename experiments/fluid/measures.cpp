@@ -157,12 +157,16 @@ SurfaceDeviation surface_distance(const FluidScene& scene, const Frame& frame,
   return mutual_deviation(mesh_of(frame), mesh_of(reference), std::max(scene.cell / 2, 1e-9));
 }
 
-std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,
-                                                  const Frame& reference) {
+std::optional<HeightMeasures> height_comparison(const FluidScene& scene, const Frame& frame,
+                                                const Frame& reference) {
+  const TriMesh theirs = mesh_of(reference);
   const std::optional<Columns> a = columns_of(scene, mesh_of(frame));
-  const std::optional<Columns> b = columns_of(scene, mesh_of(reference));
+  const std::optional<Columns> b = columns_of(scene, theirs);
   if (!a || !b) return {};
-  return compare_columns(a->top, b->top);
+  HeightMeasures m;
+  m.columns = compare_columns(a->top, b->top);
+  if (closedness(theirs).components == 1) m.landed_rms = m.columns.rms;
+  return m;
 }
 
 Value volume_change(const FluidScene&, const Frame& frame, const Frame& reference) {

@@ -61,9 +61,15 @@ std::optional<DamMeasures> dam_measures(const FluidScene& scene, const Frame& fr
 SurfaceDeviation surface_distance(const FluidScene& scene, const Frame& frame,
                                   const Frame& reference);
 
-/// Highest points at the gauges against the reference's; absent without gauges or surface.
-std::optional<ColumnComparison> height_comparison(const FluidScene& scene, const Frame& frame,
-                                                  const Frame& reference);
+/// Highest points at the gauges against the reference's.
+struct HeightMeasures {
+  ColumnComparison columns;
+  Value landed_rms;  ///< RMS difference, where the reference's surface is in one piece
+};
+
+/// Absent without gauges or surface.
+std::optional<HeightMeasures> height_comparison(const FluidScene& scene, const Frame& frame,
+                                                const Frame& reference);
 
 /// Enclosed volume over the reference's, minus 1; absent when one of the two is not closed.
 Value volume_change(const FluidScene& scene, const Frame& frame, const Frame& reference);

@@ -133,11 +133,16 @@ MetricGroup distance_group() {
 }
 
 MetricGroup height_group() {
+  using M = const HeightMeasures&;
   return reference_metrics<FluidScene>({"surface"}, height_comparison)
       .row("height_rms", "m", "RMS difference of the highest points at wave gauges a cell apart",
-           kLow, kChaotic, &ColumnComparison::rms)
+           kLow, kChaotic, [](M m) { return m.columns.rms; })
       .row("height_correlation", "1", "correlation of the highest points at the gauges", kHigh,
-           {0.05, 0}, &ColumnComparison::correlation);
+           {0.05, 0}, [](M m) { return m.columns.correlation; })
+      .row("landed_height_rms", "m",
+           "height_rms of the frames in which the reference's surface is in one piece: no drop is "
+           "in the air",
+           kLow, kChaotic, [](M m) { return m.landed_rms; });
 }
 
 MetricGroup volume_change_group() {

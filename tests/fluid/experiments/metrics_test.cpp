@@ -129,10 +129,19 @@ TEST_F(TankMetrics, ComparisonOfTwoPools) {
   const Frame low = frame_of(box({0, 0, 0}, {1, 0.4, 0.1}));
   const Frame high = frame_of(box({0, 0, 0}, {1, 0.4, 0.11}));
   EXPECT_NEAR(value("height_rms", high, &low).value(), 0.01, 1e-12);
+  EXPECT_NEAR(value("landed_height_rms", high, &low).value(), 0.01, 1e-12);
   EXPECT_NEAR(value("distance_max", high, &low).value(), 0.01, 1e-12);
   EXPECT_NEAR(value("volume_change", high, &low).value(), 0.1, 1e-12);
   // Round-off of the nearest points, of coordinates of 1 m.
   EXPECT_NEAR(value("distance_rms", low, &low).value(), 0, 1e-15);
+}
+
+TEST_F(TankMetrics, HeightsBelowADropInTheAirAreNotThoseOfLandedWater) {
+  const Frame pool = frame_of(box({0, 0, 0}, {1, 0.4, 0.1}));
+  const Frame falling =
+      frame_of(both(box({0, 0, 0}, {1, 0.4, 0.1}), box({0.4, 0.2, 0.3}, {0.5, 0.3, 0.4})));
+  EXPECT_TRUE(value("height_rms", pool, &falling).has_value());
+  EXPECT_FALSE(value("landed_height_rms", pool, &falling).has_value());
 }
 
 // Volumes 0.04, 0.0408, 0.0396 m^3: at most 2 % from the first. Heights 0.1, 0.102, 0.099 m have
