@@ -1,8 +1,8 @@
 """Keeps the numbers of the pages equal to the published records (docs/file-formats.md).
 
     python3 results/figures.py                        writes what stands between the markers of all pages
-    python3 results/figures.py --check                exit code 1 where a page differs from its source,
-                                                      or a citation from docs/references.bib
+    python3 results/figures.py --check                exit code 1 where a page differs from its source, a citation
+                                                      from docs/references.bib, or a finding is written by nothing
     python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew, and their pictures
 
 Pages are README.md and docs/**/*.md. A record holds what the pages quote of its run: a new quantity on a page
@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import citations
+import findings
 import pages
 import pictures
 import records
@@ -54,7 +55,8 @@ def unshown(texts, published):
 def check(root):
     texts, sources = page_texts(root), pages.read_sources(root)
     found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
-    found += unshown(texts, sources.records) + pictures.problems(texts, sources.records, root) + citations.problems(root)
+    found += unshown(texts, sources.records) + pictures.problems(texts, sources.records, root)
+    found += citations.problems(root) + findings.problems(texts)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
 

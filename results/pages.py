@@ -1,6 +1,7 @@
 """Pages whose numbers are generated: their markers found, checked and rewritten (docs/file-formats.md).
 
-    <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose
+    <!--= EXPRESSION -->1.3 %<!-- -->                        a number in prose, of a record (expressions.py), of an
+                                                             experiment file, or quoted (settings.py)
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
 KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE]`, `options TOPIC`, or `table`
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import expressions
+import settings
 from expressions import ExpressionError
 from runfile import RunFileError
 from records import Record, read_records
@@ -214,11 +216,21 @@ def markers_of(page, text):
                    m["pad"] if m.re is BLOCK else "") for m in found]
 
 
+def number_of(marker, sources):
+    """Of a record, of an experiment file, or, quoted, what stands there."""
+    if marker.source.startswith("key "):
+        return settings.setting(marker.source, sources.root)
+    if marker.source.startswith("from "):
+        settings.require_source(marker.source, sources.root)
+        return marker.shown
+    return expressions.evaluate(marker.source, sources.records)
+
+
 def content_of(page, marker, sources):
     """What should stand between the two comments of a marker. Raises PageError."""
     try:
         if not marker.block:
-            return expressions.evaluate(marker.source, sources.records)
+            return number_of(marker, sources)
         return "".join(f"{marker.pad}{line}\n" if line else "\n" for text in block_lines(marker.source, sources)
                        for line in text.split("\n"))
     except ExpressionError as error:
@@ -256,7 +268,8 @@ def quoted(page, text):
     for marker in markers_of(page, text):
         try:
             for source in PLACEHOLDER.findall(marker.source) if marker.block else [marker.source]:
-                out += expressions.quoted(source)
+                if marker.block or not marker.source.startswith(("key ", "from ")):
+                    out += expressions.quoted(source)
         except ExpressionError as error:
             raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error
     return out

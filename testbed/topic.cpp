@@ -1,5 +1,7 @@
 #include "testbed/topic.h"
 
+#include <utility>
+
 #include "core/error.h"
 
 namespace geoprior {
@@ -32,6 +34,25 @@ const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
     if (row.name == name) return &row;
   }
   return nullptr;
+}
+
+const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name) {
+  for (const DiagnosticEntry& row : topic.diagnostics) {
+    if (row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+void DiagnosticTable::measured(std::string metric, DiagnosticEntry row) {
+  row.metric = std::move(metric);
+  rows_.push_back(std::move(row));
+}
+
+void DiagnosticTable::unmeasured(const std::string& why, std::vector<DiagnosticEntry> rows) {
+  for (DiagnosticEntry& row : rows) {
+    row.unmeasured = why;
+    rows_.push_back(std::move(row));
+  }
 }
 
 }  // namespace geoprior

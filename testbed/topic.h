@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -173,6 +174,20 @@ struct DiagnosticEntry {
   /// frames grows by more than `tolerance`.
   bool counted_work = false;
   Tolerance tolerance = {};
+  /// The metric that measures the same from outside: it is what a claim reads. Empty: none does.
+  std::string metric = {};
+  std::string unmeasured = {};  ///< why none does; empty beside a metric
+};
+
+/// A topic's diagnostics, each with the metric that measures the same, or why none does.
+class DiagnosticTable {
+ public:
+  void measured(std::string metric, DiagnosticEntry row);
+  void unmeasured(const std::string& why, std::vector<DiagnosticEntry> rows);
+  [[nodiscard]] std::vector<DiagnosticEntry> rows() { return std::move(rows_); }
+
+ private:
+  std::vector<DiagnosticEntry> rows_;
 };
 
 /// What a command of a topic has to say: a text for standard output, and lines for people.
@@ -256,6 +271,7 @@ std::vector<std::reference_wrapper<const MetricEntry>> metric_rows(const Topic& 
 std::vector<std::string> metric_names(const Topic& topic);
 
 /// The row of that name, null when there is none.
+const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name);
 const MetricEntry* find_metric(const Topic& topic, const std::string& name);
 
 /// The group that the row is in.

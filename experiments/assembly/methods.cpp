@@ -106,22 +106,26 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   constexpr Tolerance kCounts{0, 0};
-  return {
-      {"depth", "1", "replacements one after the other, from an input"},
-      {"candidates", "1", "replacements that were looked at so far", true, kCounts},
-      {"closing", "1", "of these, those whose seams meet", true, kCounts},
-      {"valid", "1", "of these, distinct ones that keep all rules"},
-      {"duplicates", "1", "assemblies that were made before"},
-      {"states", "1", "assemblies whose replacements were looked at"},
-      {"broken_bill", "1", "assemblies of more parts than are to be had"},
-      {"broken_counts", "1", "assemblies with too few or many entries or exits"},
-      {"broken_connected", "1", "assemblies that do not hang together"},
-      {"broken_closure", "1", "assemblies with a joint beyond the tolerance"},
-      {"broken_ground", "1", "assemblies with a part that should stand on the floor and does not"},
-      {"broken_box", "1", "assemblies that leave the box"},
-      {"broken_way", "1", "assemblies with a ball's way that rises or does not end in an exit"},
-      {"broken_collision", "1", "assemblies with parts that meet"},
-  };
+  DiagnosticTable table;
+  table.unmeasured(
+      "of the search: only what it keeps is recorded",
+      {{"depth", "1", "replacements one after the other, from an input"},
+       {"candidates", "1", "replacements that were looked at so far", true, kCounts},
+       {"closing", "1", "of these, those whose seams meet", true, kCounts},
+       {"valid", "1", "of these, distinct ones that keep all rules"},
+       {"duplicates", "1", "assemblies that were made before"},
+       {"states", "1", "assemblies whose replacements were looked at"}});
+  table.unmeasured(
+      "of assemblies that were thrown away: of those that were kept each rule has its metric",
+      {{"broken_bill", "1", "assemblies of more parts than are to be had"},
+       {"broken_counts", "1", "assemblies with too few or many entries or exits"},
+       {"broken_connected", "1", "assemblies that do not hang together"},
+       {"broken_closure", "1", "assemblies with a joint beyond the tolerance"},
+       {"broken_ground", "1", "assemblies with a part that should stand on the floor and does not"},
+       {"broken_box", "1", "assemblies that leave the box"},
+       {"broken_way", "1", "assemblies with a ball's way that rises or does not end in an exit"},
+       {"broken_collision", "1", "assemblies with parts that meet"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::assembly

@@ -56,31 +56,35 @@ std::vector<MethodEntry> methods() {
 std::vector<DiagnosticEntry> diagnostics() {
   // Counts are exact on one machine; another compiler's round-off moves some of them.
   constexpr Tolerance kWork{0.1, 0.05};
-  return {
-      // Recorded by every method.
-      {"details", "1", "details, visible or not"},
-      {"visible_details", "1", "details of weight above 1/2"},
-      {"ghosts", "1", "vertices of the surface that M_d keeps: along borders, around thin parts"},
-      {"mean_edge", "m", "mean edge of M_d among details"},
-      {"flips", "1", "edges of M_d flipped in the frame", true, kWork},
-      {"inserted", "1", "details that came in the frame"},
-      {"removed", "1", "details that left in the frame"},
-      {"max_weight_change", "1", "largest change of a weight in the frame"},
-      // Recorded by self-replicating details.
-      {"revived", "1", "fading details that were called back in the frame"},
-      {"fading", "1", "details that began to fade in the frame"},
-      {"refused_flips", "1", "flips that M_d refused since the start"},
-      {"failed_queries", "1", "triangles for which the table held no triplet"},
-      {"budget_target", "1", "details that the surface asks for"},
-      {"triplets", "1", "triplets in the table (first frame)"},
-      {"triplets_met", "1", "triplets that were looked at to fill it (first frame)", true, kWork},
-      {"table_bytes", "B", "memory of the table (first frame)"},
-      // Recorded by relaxation.
-      {"mean_slide", "m", "mean way that the relaxation moved details in the frame"},
-      {"max_slide", "m", "largest such way"},
-      // Recorded by scattering.
-      {"darts", "1", "darts thrown in the frame", true, kWork},
-  };
+  DiagnosticTable table;
+  // Recorded by every method.
+  table.measured("count_ratio", {"details", "1", "details, visible or not"});
+  table.measured("visible_density_ratio",
+                 {"visible_details", "1", "details of weight above 1/2"});
+  table.measured("mean_edge_change", {"mean_edge", "m", "mean edge of M_d among details"});
+  table.measured("inserted_total", {"inserted", "1", "details that came in the frame"});
+  table.measured("removed_total", {"removed", "1", "details that left in the frame"});
+  table.measured("weight_step",
+                 {"max_weight_change", "1", "largest change of a weight in the frame"});
+  table.unmeasured(
+      "work of the method, and of the mesh that it alone keeps",
+      {{"ghosts", "1", "vertices of the surface that M_d keeps: along borders, around thin parts"},
+       {"flips", "1", "edges of M_d flipped in the frame", true, kWork},
+       // Recorded by self-replicating details.
+       {"revived", "1", "fading details that were called back in the frame"},
+       {"fading", "1", "details that began to fade in the frame"},
+       {"refused_flips", "1", "flips that M_d refused since the start"},
+       {"failed_queries", "1", "triangles for which the table held no triplet"},
+       {"budget_target", "1", "details that the surface asks for"},
+       {"triplets", "1", "triplets in the table (first frame)"},
+       {"triplets_met", "1", "triplets that were looked at to fill it (first frame)", true, kWork},
+       {"table_bytes", "B", "memory of the table (first frame)"},
+       // Recorded by relaxation.
+       {"mean_slide", "m", "mean way that the relaxation moved details in the frame"},
+       {"max_slide", "m", "largest such way"},
+       // Recorded by scattering.
+       {"darts", "1", "darts thrown in the frame", true, kWork}});
+  return table.rows();
 }
 
 }  // namespace geoprior::details

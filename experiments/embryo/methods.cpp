@@ -31,7 +31,11 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
-  return {{"active_processes", "1", "processes that are under way on the day and active"}};
+  DiagnosticTable table;
+  table.unmeasured(
+      "a process has no surface: what it does to structures is measured",
+      {{"active_processes", "1", "processes that are under way on the day and active"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::embryo

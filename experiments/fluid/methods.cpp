@@ -64,43 +64,54 @@ std::vector<MethodEntry> methods() {
 std::vector<DiagnosticEntry> diagnostics() {
   // Counts are exact on one machine; another compiler's round-off moves some of them.
   constexpr Tolerance kWork{0.1, 0.05};
-  return {
-      // Recorded by a simulation.
-      {"particles", "1", "particles of the liquid"},
-      {"particle_volume", "m^3", "particles over particles_per_cell, in cells"},
-      {"surface_volume", "m^3", "volume that the recorded surface encloses"},
-      {"liquid_volume", "m^3", "volume of the liquid cells that the last substep projected"},
-      {"substeps", "1", "time steps of the frame", true, kWork},
-      {"cfl", "1", "cells that the fastest particle crossed in the longest of them"},
-      {"pressure_iterations", "1",
-       "iterations of the pressure solver, summed over the frame's substeps", true, kWork},
-      {"pressure_converged", "1", "0 when a solve stopped at its largest number of iterations"},
-      {"max_divergence", "1/s",
-       "largest divergence of a liquid cell after a projection of the frame"},
-      {"kinetic_energy", "J", "of the particles"},
-      {"potential_energy", "J", "of the particles above the origin"},
-      {"momentum_x", "kg m/s", "of the particles"},
-      {"momentum_y", "kg m/s", "of the particles"},
-      {"momentum_z", "kg m/s", "of the particles"},
-      // Recorded by an ocean.
-      {"folded_triangles", "1", "triangles turned over by choppiness"},
-      // Recorded by an extraction.
-      {"regions", "1", "regions of the frame"},
-      {"tracks", "1", "features of the whole animation"},
-      {"masked_share", "1", "share of the vertices that lie at walls and solids"},
-      // What an extraction has lifted, or a sculpting for its paste.
-      {"lifted_features", "1", "features taken from their animations"},
-      {"feature_bytes", "B", "memory that they take"},
-      {"feature_file_bytes", "B", "files that they are stored in: the library, and pictures"},
-      {"sequence_bytes", "B", "memory that positions and triangles of the animation take"},
-      // Recorded by a paste.
-      {"target_vertices", "1", "vertices of the target's frame"},
-      {"displaced_vertices", "1", "vertices of the result that a map moved"},
-      {"added_triangles", "1", "triangles more than the target has"},
-      {"features", "1", "features that are there in the frame"},
-      {"added_volume", "m^3", "integral of the displacements along the normal"},
-      {"min_jacobian", "1", "smallest det(I + grad d) of the maps: 0 or less where they fold"},
-  };
+  DiagnosticTable table;
+  // Recorded by a simulation.
+  table.unmeasured(
+      "work of the solver, or of its cells and velocities, which are not recorded",
+      {{"particles", "1", "particles of the liquid"},
+       {"particle_volume", "m^3", "particles over particles_per_cell, in cells"},
+       {"liquid_volume", "m^3", "volume of the liquid cells that the last substep projected"},
+       {"substeps", "1", "time steps of the frame", true, kWork},
+       {"cfl", "1", "cells that the fastest particle crossed in the longest of them"},
+       {"pressure_iterations", "1",
+        "iterations of the pressure solver, summed over the frame's substeps", true, kWork},
+       {"pressure_converged", "1", "0 when a solve stopped at its largest number of iterations"},
+       {"max_divergence", "1/s",
+        "largest divergence of a liquid cell after a projection of the frame"},
+       {"kinetic_energy", "J", "of the particles"},
+       {"momentum_x", "kg m/s", "of the particles"},
+       {"momentum_y", "kg m/s", "of the particles"},
+       {"momentum_z", "kg m/s", "of the particles"}});
+  table.measured("volume",
+                 {"surface_volume", "m^3", "volume that the recorded surface encloses"});
+  table.measured("potential_energy",
+                 {"potential_energy", "J", "of the particles above the origin"});
+  // Recorded by an extraction.
+  table.unmeasured(
+      "what the method takes for features: metrics know them only where they are injected",
+      {{"regions", "1", "regions of the frame"},
+       {"tracks", "1", "features of the whole animation"},
+       {"features", "1", "features that are there in the frame"},
+       {"masked_share", "1", "share of the vertices that lie at walls and solids"}});
+  // What an extraction has lifted, or a sculpting for its paste.
+  table.unmeasured(
+      "sizes of what the method keeps, which is not recorded",
+      {{"lifted_features", "1", "features taken from their animations"},
+       {"feature_bytes", "B", "memory that they take"},
+       {"feature_file_bytes", "B", "files that they are stored in: the library, and pictures"},
+       {"sequence_bytes", "B", "memory that positions and triangles of the animation take"}});
+  // Recorded by an ocean and by a paste.
+  table.unmeasured(
+      "of the maps themselves: a surface does not say what moved it",
+      {{"folded_triangles", "1", "triangles turned over by choppiness"},
+       {"displaced_vertices", "1", "vertices of the result that a map moved"},
+       {"added_volume", "m^3", "integral of the displacements along the normal"},
+       {"min_jacobian", "1", "smallest det(I + grad d) of the maps: 0 or less where they fold"}});
+  table.measured("triangles",
+                 {"added_triangles", "1", "triangles more than the target has"});
+  table.unmeasured("of the target, which is another run",
+                   {{"target_vertices", "1", "vertices of the target's frame"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::fluid

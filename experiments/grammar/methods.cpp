@@ -70,20 +70,26 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   constexpr Tolerance kCounts{0, 0};
-  return {
-      {"rewrites", "1", "rules applied, one an element and phase", true, kCounts},
-      {"rewrites_per_element", "1", "rewrites over the elements that were asked: at most 2"},
-      {"asked", "1", "elements that were asked"},
-      {"changed", "1", "elements that were there and are not what they were, bit for bit"},
-      {"spawned", "1", "elements that were added, or shown again"},
-      {"removed", "1", "elements that were taken away"},
-      {"followed", "1", "elements that a tag let only follow what they hang on"},
-      {"stopped", "1", "elements that a tag kept where they were"},
-      {"iterations", "1", "iterations of the optimiser", true, {2, 0.2}},
-      {"gradient", "1", "largest component of the projected gradient where it ended"},
-      {"start", "1",
-       "0: the better optimum began with the grammar's state, 1: with the rest state"},
-  };
+  DiagnosticTable table;
+  table.unmeasured(
+      "work of a derivation, of which the object keeps only what it leaves",
+      {{"rewrites", "1", "rules applied, one an element and phase", true, kCounts},
+       {"rewrites_per_element", "1", "rewrites over the elements that were asked: at most 2"},
+       {"asked", "1", "elements that were asked"},
+       {"followed", "1", "elements that a tag let only follow what they hang on"},
+       {"stopped", "1", "elements that a tag kept where they were"}});
+  table.measured(
+      "touched_share",
+      {"changed", "1", "elements that were there and are not what they were, bit for bit"});
+  table.measured("new_elements", {"spawned", "1", "elements that were added, or shown again"});
+  table.measured("lost_elements", {"removed", "1", "elements that were taken away"});
+  table.unmeasured(
+      "work of the optimiser, of which the object keeps only the end",
+      {{"iterations", "1", "iterations of the optimiser", true, {2, 0.2}},
+       {"gradient", "1", "largest component of the projected gradient where it ended"},
+       {"start", "1",
+        "0: the better optimum began with the grammar's state, 1: with the rest state"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::grammar

@@ -132,36 +132,45 @@ std::vector<MethodEntry> methods() {
 
 std::vector<DiagnosticEntry> diagnostics() {
   constexpr Tolerance kWork{1, 0.1};
-  return {
-      {"silhouette_edges", "1", "edges that carry the silhouettes of all views", true, kWork},
-      {"gaps", "1", "stretches of silhouettes that no edge of the surface can cover"},
-      {"gap_length", "m", "their length in all"},
-      {"residual_accuracy", "m", "root mean square of the rows of the term, as all of these"},
-      {"residual_variation", "m", "of even variation of depth along curves"},
-      {"residual_pairs", "m", "of drawn symmetric pairs"},
-      {"residual_dense", "m", "of matches between them"},
-      {"residual_developability", "m", "of tangent planes along rulings"},
-      {"residual_planarity", "m", "of flat panels"},
-      {"residual_parallel", "m", "of parallel ends of patches"},
-      {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
-      {"matches", "1", "dense symmetric correspondences"},
-      {"joint_share", "1", "share of the joints' limits: 1 curled up, -1 bent back"},
-      {"curl", "deg", "sum of the largest angles of all joints that curl the body up"},
-      {"bend_back", "deg", "and that bend it back"},
-      {"least_range", "deg", "of a joint, both ways together, the least"},
-      {"arc_condition", "1", "greatest over least singular value of an arc's fit, the worst"},
-      {"axis_residual", "deg",
-       "between the mirror plane and the axis that a free ellipse has, the reading that was kept; "
-       "the largest"},
-      {"axis_residual_other", "deg", "of the other reading, the least"},
-      {"refine_iterations", "1", "steps of the non-linear refinement"},
-      {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
-      {"perspective", "1", "growth of the image over one diagonal of depth, as found"},
-      {"texture_seen", "1", "share of the pattern that the photograph shows"},
-      {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
-      {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
-      {"flow_energy", "1", "what a flow descends, as it defines it"},
-  };
+  DiagnosticTable table;
+  table.measured("silhouette_gaps",
+                 {"gaps", "1", "stretches of silhouettes that no edge of the surface can cover"});
+  table.measured("silhouette_gaps", {"gap_length", "m", "their length in all"});
+  table.unmeasured(
+      "what a solver minimises, and its work: the surface does not say how it was found",
+      {{"silhouette_edges", "1", "edges that carry the silhouettes of all views", true, kWork},
+       {"residual_accuracy", "m", "root mean square of the rows of the term, as all of these"},
+       {"residual_variation", "m", "of even variation of depth along curves"},
+       {"residual_pairs", "m", "of drawn symmetric pairs"},
+       {"residual_dense", "m", "of matches between them"},
+       {"residual_developability", "m", "of tangent planes along rulings"},
+       {"residual_planarity", "m", "of flat panels"},
+       {"residual_parallel", "m", "of parallel ends of patches"},
+       {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
+       {"matches", "1", "dense symmetric correspondences"},
+       {"arc_condition", "1", "greatest over least singular value of an arc's fit, the worst"},
+       {"refine_iterations", "1", "steps of the non-linear refinement"},
+       {"flow_energy", "1", "what a flow descends, as it defines it"}});
+  table.unmeasured(
+      "of the joints' limits, of which the recorded poses are single points",
+      {{"joint_share", "1", "share of the joints' limits: 1 curled up, -1 bent back"},
+       {"curl", "deg", "sum of the largest angles of all joints that curl the body up"},
+       {"bend_back", "deg", "and that bend it back"},
+       {"least_range", "deg", "of a joint, both ways together, the least"}});
+  table.unmeasured(
+      "how the drawing was read: of known shapes depth and axes are measured",
+      {{"axis_residual", "deg",
+        "between the mirror plane and the axis that a free ellipse has, the reading that was "
+        "kept; the largest"},
+       {"axis_residual_other", "deg", "of the other reading, the least"},
+       {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
+       {"perspective", "1", "growth of the image over one diagonal of depth, as found"}});
+  table.unmeasured(
+      "where a texture's points came from: its picture alone is recorded",
+      {{"texture_seen", "1", "share of the pattern that the photograph shows"},
+       {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
+       {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::sketch

@@ -163,18 +163,23 @@ std::vector<MethodEntry> methods() {
 std::vector<DiagnosticEntry> diagnostics() {
   // Counts are exact on one machine; another compiler's round-off moves some of them.
   constexpr Tolerance kWork{0.1, 0.05};
-  return {
-      {"evaluations_per_vertex", "1", "bone fields sampled, over the vertices", true, kWork},
-      {"iterations", "1", "steps of the projection", true, kWork},
-      {"field_error_rms", "1",
-       "root mean square of |field - target| over the vertices that neither stopped in contact nor "
-       "were smoothed"},
-      {"field_error_max", "1", "largest such |field - target|"},
-      {"stopped_fraction", "1", "share of the vertices that stopped in contact"},
-      {"unfinished_fraction", "1", "share of the vertices that ran out of iterations"},
-      {"contact_gap_max", "1",
-       "largest difference of two bones' fields at a vertex stopped in contact, after smoothing"},
-  };
+  DiagnosticTable table;
+  table.unmeasured(
+      "work of the method, which leaves no trace in its vertices",
+      {{"evaluations_per_vertex", "1", "bone fields sampled, over the vertices", true, kWork},
+       {"iterations", "1", "steps of the projection", true, kWork},
+       {"stopped_fraction", "1", "share of the vertices that stopped in contact"},
+       {"unfinished_fraction", "1", "share of the vertices that ran out of iterations"}});
+  table.unmeasured(
+      "of fields that are the method's own: others have none",
+      {{"field_error_rms", "1",
+        "root mean square of |field - target| over the vertices that neither stopped in contact "
+        "nor were smoothed"},
+       {"field_error_max", "1", "largest such |field - target|"},
+       {"contact_gap_max", "1",
+        "largest difference of two bones' fields at a vertex stopped in contact, after "
+        "smoothing"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::skinning

@@ -60,12 +60,15 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
-  return {
-      {"events", "1", "events since the start"},
-      {"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
-      {"true_peak", "dBFS", "of the whole sound; absent when it is silent"},
-      {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"},
-  };
+  DiagnosticTable table;
+  table.measured("sound_events", {"events", "1", "events since the start"});
+  table.measured("sound_peak",
+                 {"true_peak", "dBFS", "of the whole sound; absent when it is silent"});
+  table.unmeasured(
+      "metrics hear the sound alone, not what it was made of",
+      {{"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
+       {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"}});
+  return table.rows();
 }
 
 }  // namespace geoprior::sound

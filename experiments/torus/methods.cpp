@@ -84,8 +84,11 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
-  return {{"tangent_default", "1",
-           "mean of |Id - f* < , >| at the windows, from the method's own derivatives"}};
+  DiagnosticTable table;
+  table.measured("default_mean",
+                 {"tangent_default", "1",
+                  "mean of |Id - f* < , >| at the windows, from the method's own derivatives"});
+  return table.rows();
 }
 
 }  // namespace geoprior::torus

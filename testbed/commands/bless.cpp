@@ -23,6 +23,7 @@
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/reference/diff.h"
 #include "testbed/runner/reference/headlines.h"
+#include "testbed/runner/reference/slack.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/runner/spec/toml_tree.h"
 
@@ -188,6 +189,7 @@ int bless_command(const CommandContext& context, const BlessRequest& request) {
   const std::string size = size_of(run.experiment);
   RunRecord graded = run.record;
   graded.claims = decide_claims(run.experiment, run.record);
+  require_near_limits(run.experiment, graded.claims);
   grade_claims(run.experiment, context.topics, run.folder, graded);
   const std::vector<ClaimRecord>& claims = graded.claims;
   const Gates gates(run.experiment, *run.topic);

@@ -97,6 +97,11 @@ Described describe_diagnostic(const Topic& topic, const DiagnosticEntry& entry) 
     result.facts.emplace_back("counted work", "check fails when its mean grows by more than " +
                                                   tolerance_text(entry.tolerance));
   }
+  if (!entry.metric.empty()) {
+    result.facts.emplace_back("measured from outside by", entry.metric);
+  } else {
+    result.facts.emplace_back("measured by no metric", entry.unmeasured);
+  }
   return result;
 }
 

@@ -45,6 +45,15 @@ TEST_P(MetricTables, EveryRowIsComplete) {
   EXPECT_EQ(find_metric(GetParam(), "no_such_metric"), nullptr);
 }
 
+TEST_P(MetricTables, DiagnosticsNameTheMetricThatMeasuresTheSameOrWhyNoneDoes) {
+  for (const DiagnosticEntry& row : GetParam().diagnostics) {
+    EXPECT_TRUE(is_snake_case(row.name)) << row.name;
+    EXPECT_NE(row.metric.empty(), row.unmeasured.size() < 20) << row.name;
+    EXPECT_TRUE(row.metric.empty() || find_metric(GetParam(), row.metric) != nullptr) << row.name;
+    EXPECT_EQ(find_diagnostic(GetParam(), row.name), &row);
+  }
+}
+
 TEST_P(MetricTables, EveryGroupMeasuresOnceForItsRows) {
   for (const MetricGroup& group : GetParam().metrics) {
     ASSERT_FALSE(group.rows.empty());

@@ -13,13 +13,6 @@ namespace geoprior {
 
 namespace {
 
-const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name) {
-  for (const DiagnosticEntry& diagnostic : topic.diagnostics) {
-    if (diagnostic.name == name) return &diagnostic;
-  }
-  return nullptr;
-}
-
 std::string rows_text(const MetricGroup& group) {
   std::string names;
   for (const MetricEntry& row : group.rows) {

@@ -21,20 +21,6 @@ constexpr Tolerance kSlope{0.02, 0};
 /// Of a distance of two medians in half ranges, which a single seed can move.
 constexpr Tolerance kWithinSpread{0.1, 0.05};
 
-Direction direction_of(Comparison comparison) {
-  switch (comparison) {
-    case Comparison::less_equal:
-    case Comparison::less:
-      return Direction::lower_is_better;
-    case Comparison::greater_equal:
-    case Comparison::greater:
-      return Direction::higher_is_better;
-    case Comparison::equal:
-      break;
-  }
-  return Direction::none;
-}
-
 /// How far the left side is from where the claim would hold.
 double shortfall(const ClaimSpec& claim, const ClaimRecord& record) {
   switch (direction_of(claim.is)) {
@@ -49,10 +35,9 @@ double shortfall(const ClaimSpec& claim, const ClaimRecord& record) {
 
 std::string unit_of(const Topic& topic, const std::string& quantity) {
   if (const MetricEntry* metric = find_metric(topic, quantity)) return metric->unit;
-  for (const DiagnosticEntry& diagnostic : topic.diagnostics) {
-    if ("diagnostic:" + diagnostic.name == quantity) return diagnostic.unit;
-  }
-  return "1";
+  if (!quantity.starts_with("diagnostic:")) return "1";
+  const DiagnosticEntry* diagnostic = find_diagnostic(topic, quantity.substr(11));
+  return diagnostic == nullptr ? "1" : diagnostic->unit;
 }
 
 std::string unit_of(const Topic& topic, const StudySpec& study) {

@@ -109,9 +109,17 @@ Names variants_of(const ClaimTable& table, const TomlNode& node, const KnownName
   return kept;
 }
 
+/// Who reads that a claim holds must read that one seed in ten may not.
+void require_share_of_seeds(const ClaimTable& table, const TomlNode& node) {
+  if (table.over != ClaimOver::seed || table.text.find("9 of 10") != std::string::npos) return;
+  throw Error("does not say that the claim is about 9 of 10 seeds", place_of(node, "text"),
+              "\"…, in 9 of 10 seeds\"");
+}
+
 ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   ClaimSpec claim;
   require_line(table.text, "a claim", place_of(node, "text"));
+  require_share_of_seeds(table, node);
   claim.text = table.text;
   claim.metric = table.metric;
   claim.of = table.of;
@@ -121,6 +129,8 @@ ClaimSpec claim_of(const ClaimTable& table, const TomlNode& node) {
   claim.offset = table.offset;
   claim.tolerance = table.tolerance;
   claim.known_shortfall = table.known_shortfall;
+  if (table.slack) require_line(*table.slack, "the reason", place_of(node, "slack"));
+  claim.slack = table.slack;
   claim.reduce = table.reduce;
   if (table.of_reduce != OfReduction::same) claim.of_reduce = reduction_of(table.of_reduce);
   claim.over = table.over;
@@ -182,11 +192,21 @@ void require_null(const ClaimSpec& claim, const std::string& variant,
   }
 }
 
+/// What a method says of itself is no claim where a metric says it from outside.
+void require_outside(const std::string& quantity, const Topic& topic, const TomlNode& node) {
+  if (!quantity.starts_with("diagnostic:")) return;
+  const DiagnosticEntry* diagnostic = find_diagnostic(topic, quantity.substr(11));
+  if (diagnostic == nullptr || diagnostic->metric.empty()) return;
+  throw Error("'" + quantity + "' is what the method says of itself", place_of(node, "metric"),
+              "the metric '" + diagnostic->metric + "', which measures it from outside");
+}
+
 void complete(ClaimSpec& claim, const Topic& topic, const KnownNames& names,
               const std::map<std::string, Tolerance>& tolerances,
               const std::vector<StudySpec>& studies, const TomlNode& node) {
   const StudySpec* study = study_of(claim, studies);
   const std::string& quantity = study != nullptr ? study->quantity : claim.metric;
+  require_outside(quantity, topic, node);
   const MetricEntry* metric = find_metric(topic, quantity);
   if (quantity.starts_with("timing:")) claim.exempt = Exemption::timing;
   if (metric != nullptr && metric->oracle) claim.exempt = Exemption::oracle;

@@ -13,6 +13,20 @@ const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& 
   return found == studies.end() ? nullptr : &*found;
 }
 
+Direction direction_of(Comparison comparison) {
+  switch (comparison) {
+    case Comparison::less_equal:
+    case Comparison::less:
+      return Direction::lower_is_better;
+    case Comparison::greater_equal:
+    case Comparison::greater:
+      return Direction::higher_is_better;
+    case Comparison::equal:
+      break;
+  }
+  return Direction::none;
+}
+
 bool null_is_yardstick(const ClaimSpec& claim) {
   return claim.null && claim.of == claim.null && claim.factor == 1 && claim.offset == 0 &&
          !claim.of_reduce;

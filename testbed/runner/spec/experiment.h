@@ -58,6 +58,8 @@ struct ClaimSpec {
   /// Why the claim falls short, where that is known and documented: `run` reports it, `check` lets
   /// it pass where it falls short by as much as when it was blessed.
   std::optional<std::string> known_shortfall;
+  /// Why the limit is far from the value: `bless` wants it near.
+  std::optional<std::string> slack;
   std::optional<double> at_parameter;  ///< at = { angle_deg = 90 }; the frame must exist
   std::string at_key;  ///< "angle_deg": parameter name and unit, compared with the scene's
   /// Over the frames, when there is no `at`; of `every` frame, the one nearest to failing is
@@ -89,6 +91,9 @@ struct StudySpec {
 
 /// The study that the claim is about; null when it is about a variant.
 const StudySpec* study_of(const ClaimSpec& claim, const std::vector<StudySpec>& studies);
+
+/// Which way a value is better for such a claim; none for an equality.
+Direction direction_of(Comparison comparison);
 
 /// The claim compares with its null itself (`a < b` with b for null): b is not less than b, so the
 /// null fails by nothing, and it is the claim's own margin that must be clear.

@@ -65,6 +65,7 @@ struct ClaimTable {
   double offset = 0;
   double tolerance = 0;
   std::optional<std::string> known_shortfall;
+  std::optional<std::string> slack;
   Reduction reduce = Reduction::max;
   OfReduction of_reduce = OfReduction::same;
   std::vector<ExceptTable> except;

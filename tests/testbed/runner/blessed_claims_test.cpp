@@ -123,6 +123,18 @@ TEST_F(BlessedClaimsOfProgram, AnExceptedCaseMayFallShort) {
   EXPECT_THAT(run.err, HasSubstr("excepted: coarse"));
 }
 
+TEST_F(BlessedClaimsOfProgram, ALimitFarFromTheValueNeedsAReason) {
+  // The polygons of 8, 16 and 32 come to 0.08, 0.02 and 0.005 of the radius.
+  write("value = 0.5\nnull = \"half\"\n");
+  const toy::Outcome refused = home_.run("bless toy-circle/disc --reason first");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("disc.toml"), HasSubstr("'round' is held by"),
+                                          HasSubstr("5 times at most")));
+  EXPECT_FALSE(std::filesystem::exists(home_.root() / "results/reference/toy-circle/disc.txt"));
+  write("value = 0.5\nnull = \"half\"\nslack = \"half a disc is far\"\n");
+  EXPECT_EQ(home_.run("bless toy-circle/disc --reason first").code, 0);
+}
+
 TEST_F(BlessedClaimsOfProgram, AGradeThatMovedFailsTheCheckOfMutations) {
   // Points at 0.5 + 0.5 s of the radius 2, to a tenth of which the polygon of 16 comes.
   const std::string claim = "value = 0.2\nnull = \"square\"\n";

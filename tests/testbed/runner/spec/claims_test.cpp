@@ -59,13 +59,40 @@ TEST_F(SpecClaims, OneSentenceIsAboutSeveralVariants) {
               HasSubstr("two claims say 't'"));
 }
 
+TEST_F(SpecClaims, SentencesOverSeedsSayHowMany) {
+  const std::string claim =
+      "metric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\nover = \"seed\"\n";
+  EXPECT_THAT(error_of(toy::disc_experiment() + "[[claim]]\ntext = \"round\"\n" + claim),
+              HasSubstr("9 of 10 seeds"));
+  EXPECT_EQ(
+      error_of(toy::disc_experiment() + "[[claim]]\ntext = \"round in 9 of 10\"\n" + claim),
+      "no error");
+}
+
+/// With a diagnostic that a metric measures, as the topic's table says.
+TEST_F(SpecClaims, WhatAMetricMeasuresIsNotTakenFromTheMethod) {
+  for (Topic& topic : topics_) {
+    if (topic.name == "toy-circle") topic.diagnostics.front().metric = "radius_error";
+  }
+  const std::string claim = "[[claim]]\ntext = \"t\"\nis = \"<=\"\nvalue = 9\nmetric = ";
+  EXPECT_THAT(error_of(toy::disc_experiment() + claim +
+                       "\"diagnostic:evaluations\"\nvariant = \"polygon\"\n"),
+              AllOf(HasSubstr("is what the method says of itself"),
+                    HasSubstr("the metric 'radius_error'")));
+  EXPECT_THAT(error_of(toy::disc_experiment() +
+                       "[[study]]\nname = \"s\"\nkind = \"spread\"\nvariant = \"polygon\"\n"
+                       "quantity = \"diagnostic:evaluations\"\n" +
+                       claim + "\"study:s\"\n"),
+              HasSubstr("is what the method says of itself"));
+}
+
 TEST_F(SpecClaims, ANumberThatAnotherClaimHasIsRefused) {
   const auto claim = [](const std::string& text, const std::string& rest) {
     return "[[claim]]\ntext = \"" + text +
            "\"\nmetric = \"radius_error\"\nvariant = \"polygon\"\n" + rest;
   };
   const std::string first = toy::disc_experiment() + claim("round", "value = 1\n");
-  EXPECT_THAT(error_of(first + claim("as round", "value = 1\nover = \"seed\"\n")),
+  EXPECT_THAT(error_of(first + claim("as round, in 9 of 10", "value = 1\nover = \"seed\"\n")),
               HasSubstr("'round' claims the same of the same number"));
   EXPECT_EQ(error_of(first + claim("rounder", "value = 0.5\n")), "no error");
 }

@@ -45,7 +45,7 @@ TEST_F(SpecLeftOut, SweepsAreTakenOutWithWhatIsClaimedOfThem) {
   const std::string seeds = "[[sweep]]\nkey = \"seed\"\nvalues = [4, 5]\n";
   const std::string text =
       toy::disc_experiment() + kSweep + seeds + claim +
-      "text = \"of seeds\"\nvalue = 1\nover = \"seed\"\n" + claim +
+      "text = \"of 9 of 10 seeds\"\nvalue = 1\nover = \"seed\"\n" + claim +
       "text = \"of all but one\"\nvalue = 2\nexcept = [{ cases = [\"segments=32\"], "
       "reason = \"fine\" }]\n" +
       claim + "text = \"of the file\"\nvalue = 3\n";

@@ -215,7 +215,10 @@ Topic circle_topic() {
   };
   topic.methods = circle_methods();
   topic.metrics = circle_metrics();
-  topic.diagnostics = {{"evaluations", "1", "points of the rim", true, {0.5, 0}}};
+  DiagnosticTable diagnostics;
+  diagnostics.unmeasured("work of the method, which leaves no trace in the rim",
+                         {{"evaluations", "1", "points of the rim", true, {0.5, 0}}});
+  topic.diagnostics = diagnostics.rows();
   topic.commands = {topic_command<GreetingOptions>("greet", "say something to somebody", "name",
                                                    "who is meant", greet)};
   topic.commands.front().second_argument = "words";

@@ -303,7 +303,10 @@ Topic pendulum_topic() {
       pendulum_method("closed-form", false, "the exact solution", Scheme::closed_form),
       pendulum_method("explicit-euler", true, "first order, gains energy", Scheme::explicit_euler)};
   topic.metrics = pendulum_metrics();
-  topic.diagnostics = {{"samples", "1", "of the sound so far"}};
+  DiagnosticTable diagnostics;
+  diagnostics.unmeasured("of a sound that is recorded when it is whole",
+                         {{"samples", "1", "of the sound so far"}});
+  topic.diagnostics = diagnostics.rows();
   topic.view.part = "rod";
   return topic;
 }
