@@ -15,7 +15,7 @@ STILL_BARE = {
     "docs/methods/fluid.md": 103,
     "docs/methods/paper.md": 261,
     "docs/methods/sketch.md": 103,
-    "docs/methods/skinning.md": 52,
+    "docs/methods/skinning.md": 49,
     "docs/methods/sound.md": 159,
 }
 
