@@ -131,8 +131,8 @@ TEST(Folds, OfACylinderOnAlternatingDiagonalsHaveOneSignButAlongThoseOfOblongs) 
   EXPECT_NEAR(share(rolled(0.785, 20), 0.02), 0.51, 0.02);
 }
 
-/// Two long folds of opposite sign, a distance s apart. Discs are centred on a grid of r / 2: on the
-/// columns of a fold and beside it they hold 2 r and sqrt(3) r of it, beyond nothing.
+/// Two long folds of opposite sign, a distance s apart. Discs are centred on a grid of r / 2: on
+/// the columns of a fold and beside it they hold 2 r and sqrt(3) r of it, beyond nothing.
 TEST(Folds, OfTwoParallelOnesCancelAsDiscsHalfARadiusApartSay) {
   const double r = 0.02, whole = 2 + 2 * std::sqrt(3);
   const auto two = [&](double apart) {
