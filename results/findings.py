@@ -10,12 +10,6 @@ import re
 import citations
 from pages import BLOCK, INLINE, PLACEHOLDER, line_of, without_code
 
-# Pages that were written before the rule, and how many bare numbers they have. It only falls.
-STILL_BARE = {
-    "docs/methods/sketch.md": 103,
-    "docs/methods/skinning.md": 52,
-}
-
 SECTION = re.compile(r"^(?P<level>#+) (?:What was found|Results)\b[^\n]*$", re.MULTILINE)
 HEADING = re.compile(r"^(?P<level>#+) ", re.MULTILINE)
 REFERENCE = (r"\b(?:[Ff]ig(?:ure|s?\.|ures)|[Tt]hesis|[Ss]ections?|[Ee]q(?:uation|s?\.|uations)|[Cc]hapter|[Tt]ables?)"
@@ -76,16 +70,8 @@ def of_quick_runs(page, text):
     return lines_of(page, text, QUICK, without_code(text))
 
 
-def problems(texts, still_bare=None):
-    """One line for each bare number of a page that has more of them than it is allowed, and for each page that is
-    allowed more than it has. `texts`: text by page."""
-    allowed = STILL_BARE if still_bare is None else still_bare
-    found = []
-    for page, text in texts.items():
-        bare, most = bare_numbers(page, text), allowed.get(page, 0)
-        if len(bare) > most:
-            found += [f"{place}: a bare number, written by nothing (see docs/file-formats.md, Pages)" for place in bare]
-        elif len(bare) < most:
-            found.append(f"{page}: has {len(bare)} bare numbers, {most} are allowed in results/findings.py: lower it")
-        found += [f"{place}: of a quick run, which is no finding" for place in of_quick_runs(page, text)]
-    return found
+def problems(texts):
+    """One line for each bare number, and each word about quick runs. `texts`: text by page."""
+    return [f"{place}: {mistake}" for page, text in texts.items() for places, mistake in (
+        (bare_numbers(page, text), "a bare number, written by nothing (docs/file-formats.md, Markers of pages)"),
+        (of_quick_runs(page, text), "of a quick run, which is no finding")) for place in places]

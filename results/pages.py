@@ -4,7 +4,7 @@
                                                              experiment file, or quoted (settings.py)
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
-KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE]`, `options TOPIC`, or `table`
+KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE…]`, `options TOPIC`, or `table`
 followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
 """
 
@@ -158,7 +158,7 @@ def block_lines(source, sources):
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
     of_record = {"headline": headline, "claims": claim_list, "figure": caption}
-    if kind == "figure":  # behind the identifier, the file of the run that the picture is
+    if kind == "figure":  # behind the identifier, the files of the run that the pictures are
         argument = argument.partition(" ")[0]
     if kind in of_record:
         return of_record[kind](expressions.record_named(sources.records, argument))

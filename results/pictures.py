@@ -1,6 +1,6 @@
 """Pictures of the pages as artefacts of runs: each holds the hash of the run that drew it (PNG text), which is that of
 its experiment's record. A picture belongs to the experiment whose caption (`figure ID`, docs/file-formats.md) is the
-next block below it."""
+next block below it; a caption that names several files has as many pictures above it, in their order."""
 
 import re
 import struct
@@ -58,16 +58,16 @@ def owners(texts, root):
     found = {}
     for page, text in texts.items():
         shown = [(m.start(), m[1]) for m in SHOWN.finditer(pages.without_code(text))]
-        for marker in pages.markers_of(page, text):
-            kind, _, argument = marker.source.partition(" ")
-            before = [(at, target) for at, target in shown if at < marker.start]
-            if not (marker.block and kind == "figure" and before):
+        above = 0  # where the block before ends
+        for marker in (m for m in pages.markers_of(page, text) if m.block):
+            targets = [target for at, target in shown if above <= at < marker.start]
+            above = marker.start
+            kind, *words = marker.source.split()
+            if kind != "figure" or not targets:
                 continue
-            at, target = before[-1]
-            if any(at < other.start < marker.start for other in pages.markers_of(page, text) if other.block):
-                continue
-            experiment, _, file = argument.partition(" ")
-            found[(root / page).parent.joinpath(target).resolve()] = (experiment, file or "figure.png")
+            experiment, *files = words
+            for target, file in zip(targets[::-1], (files or ["figure.png"])[::-1]):
+                found[(root / page).parent.joinpath(target).resolve()] = (experiment, file)
     return found
 
 

@@ -49,6 +49,28 @@ ConstraintMeasures constraints_of(const GrammarScene& scene, const RecordedState
           machine_violations(state, rest, scene.kind == Object::imported)};
 }
 
+std::vector<const Tally*> tallies_of(const ConstraintMeasures& m) {
+  return {&m.building.wall_angle,
+          &m.building.wall_gap,
+          &m.building.storey_height,
+          &m.building.storey_gap,
+          &m.building.overhang,
+          &m.building.window_pitch,
+          &m.building.window_outside,
+          &m.building.door_gap,
+          &m.tree.length,
+          &m.tree.attachment,
+          &m.tree.crossings,
+          &m.scatter.too_close,
+          &m.scatter.ground_gap,
+          &m.scatter.upright,
+          &m.scatter.path_pitch,
+          &m.machine.shape,
+          &m.machine.turn,
+          &m.machine.slide,
+          &m.machine.links};
+}
+
 void raise(Value& largest, double value) { largest = std::max(largest.value_or(value), value); }
 
 /// Numbers that are in both, each ascending.
@@ -70,14 +92,14 @@ bool continues(const GrammarScene& scene, std::size_t step) {
 
 int ConstraintMeasures::broken() const {
   int sum = 0;
-  for (const Tally* t :
-       {&building.wall_angle, &building.wall_gap, &building.storey_height, &building.storey_gap,
-        &building.overhang, &building.window_pitch, &building.window_outside, &building.door_gap,
-        &tree.length, &tree.attachment, &tree.crossings, &scatter.too_close, &scatter.ground_gap,
-        &scatter.upright, &scatter.path_pitch, &machine.shape, &machine.turn, &machine.slide,
-        &machine.links})
-    sum += t->broken;
+  for (const Tally* t : tallies_of(*this)) sum += t->broken;
   return sum;
+}
+
+std::set<int> ConstraintMeasures::broken_elements() const {
+  std::set<int> out;
+  for (const Tally* t : tallies_of(*this)) out.insert(t->elements.begin(), t->elements.end());
+  return out;
 }
 
 std::optional<ConstraintMeasures> constraint_measures(const GrammarScene& scene,
@@ -192,6 +214,7 @@ std::optional<SuiteMeasures> suite_measures(const GrammarScene& scene,
                                             const FrameSequence& frames) {
   SuiteMeasures out;
   double deviation = 0, of_nothing = 0;
+  double unserved_sum = 0, asked_sum = 0;  // the same, of all elements
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Step& step = scene.steps.at(step_number(frames.parameter(i)));
     if (!is_deformation(step)) continue;
@@ -201,6 +224,13 @@ std::optional<SuiteMeasures> suite_measures(const GrammarScene& scene,
       const int broken = constraints->broken();
       raise(out.worst_violations, broken);
       out.broken_gestures = out.broken_gestures.value_or(0) + (broken > 0 ? 1 : 0);
+      const RecordedState state(*frame, scene.rest.types());
+      if (const auto unserved = unserved_deviation_of(
+              state, rest_beside(scene, state), asked_at(scene, step_number(frame->parameter)),
+              constraints->broken_elements())) {
+        unserved_sum += unserved->of_state;
+        asked_sum += unserved->of_nothing;
+      }
     }
     const auto fidelity = fidelity_measures(scene, *frame);
     if (!fidelity) continue;
@@ -210,6 +240,7 @@ std::optional<SuiteMeasures> suite_measures(const GrammarScene& scene,
   }
   if (out.gestures == 0) return std::nullopt;
   if (of_nothing > 0) out.mean_deviation_ratio = deviation / of_nothing;
+  if (asked_sum > 0) out.unserved_ratio = unserved_sum / asked_sum;
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 
 #include "core/frame.h"
 #include "experiments/grammar/measures/violations.h"
@@ -21,6 +22,8 @@ struct ConstraintMeasures {
   MachineViolations machine;
 
   [[nodiscard]] int broken() const;
+  /// Numbers of the elements that break a constraint of their own.
+  [[nodiscard]] std::set<int> broken_elements() const;
 };
 std::optional<ConstraintMeasures> constraint_measures(const GrammarScene& scene,
                                                       const Frame& frame);
@@ -80,6 +83,7 @@ struct SuiteMeasures {
   Value worst_violations;      ///< most of one of them
   Value mean_deviation_ratio;  ///< mean deviation over that of doing nothing
   Value worst_deviation_ratio;
+  Value unserved_ratio;  ///< mean unserved deviation over that of doing nothing
 };
 std::optional<SuiteMeasures> suite_measures(const GrammarScene& scene, const FrameSequence& frames);
 

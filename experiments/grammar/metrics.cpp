@@ -243,7 +243,12 @@ MetricGroup suite_group() {
            "mean over them of deviation over that of deviation_of_nothing", kLow, kSmooth,
            &M::mean_deviation_ratio)
       .row("worst_deviation_ratio", "1", "largest deviation_ratio of one of them", kLow, kSmooth,
-           &M::worst_deviation_ratio);
+           &M::worst_deviation_ratio)
+      .row("unserved_ratio", "1",
+           "as mean_deviation_ratio, of all elements that there were, where one that is gone or "
+           "breaks a constraint of its own counts as if it had stayed at rest, or as it is where "
+           "that is farther: 1 of doing nothing, and of what breaks everything",
+           kLow, kSmooth, &M::unserved_ratio);
 }
 
 }  // namespace

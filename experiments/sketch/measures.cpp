@@ -11,6 +11,7 @@
 #include "core/angles.h"
 #include "experiments/sketch/sewn_lines.h"
 #include "metrics/developability/ruling_angle.h"
+#include "metrics/developability/sharp_turning.h"
 #include "metrics/isometry/seam_lengths.h"
 #include "metrics/shape/depth_error.h"
 #include "metrics/shape/silhouette.h"
@@ -54,7 +55,8 @@ SurfaceMeasures surface_measures(const SketchScene& /*scene*/, const Frame& fram
   const auto& fold = part.require_array("fold", NamedArray::On::points, 1).values;
   std::vector<bool> left_out(mesh.V.rows());
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) left_out[v] = seam(v) > 0 || fold(v) > 0;
-  return {developability_spread(mesh), developability_spread(mesh, left_out)};
+  return {developability_spread(mesh), developability_spread(mesh, left_out),
+          sharp_turning_share(mesh, kSharpTurn, left_out)};
 }
 
 SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame) {

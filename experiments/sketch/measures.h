@@ -13,6 +13,7 @@ namespace geoprior::sketch {
 /// Of the surface: over all interior vertices, and without those of seams and folds.
 struct SurfaceMeasures {
   DevelopabilitySpread all, panels;
+  double sharp_turning = 0;  ///< `sharp_turning_share`, without edges along seams and folds
 };
 SurfaceMeasures surface_measures(const SketchScene& scene, const Frame& frame);
 

@@ -43,7 +43,11 @@ MetricGroup surface_group() {
       .row("panel_defect_sum", "rad", "angle_defect_sum without the vertices of seams and folds",
            kLow, kSum, [](M m) { return m.panels.defect_sum; })
       .row("panel_stein_energy", "rad", "stein_energy without the vertices of seams and folds",
-           kLow, kSum, [](M m) { return m.panels.hinge_sum; });
+           kLow, kSum, [](M m) { return m.panels.hinge_sum; })
+      .row("sharp_turning", "1",
+           "share of the turning, sum of length |angle between normals| over the interior edges "
+           "that no seam or fold runs along, in edges that turn by more than 20 degrees",
+           kLow, {0.005, 0}, [](M m) { return m.sharp_turning; });
 }
 
 MetricGroup silhouette_group() {

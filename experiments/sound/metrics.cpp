@@ -82,8 +82,10 @@ MetricGroup sound_group() {
       .row("sound_peak", "dBFS",
            "true peak of the mixed sound, 8 times oversampled; absent for silence", kLow, {0.01, 0},
            [](M m) { return m.peak; })
-      .row("sound_centroid", "Hz", "mean frequency by power of the mixed sound", kNone, {1, 1e-3},
-           [](M m) { return m.centroid; });
+      .row("sound_centroid", "Hz",
+           "sum of f P(f) over sum of P(f) from 20 Hz to 20 kHz, P the squared spectrum of the whole "
+           "mixed sound, mono, without a window",
+           kNone, {1, 1e-3}, [](M m) { return m.centroid; });
   for (const char* kind : {"flap", "crac", "friction", "tear"}) {
     const std::string name = kind;
     rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,

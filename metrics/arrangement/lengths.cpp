@@ -24,19 +24,18 @@ double distance_from_segment(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
   return attachment_gap(x, a, b, along);
 }
 
-std::vector<double> neighbour_pitches(std::span<const Eigen::Vector3d> points,
-                                      std::span<const double> places) {
+std::vector<NeighbourPitch> neighbour_pitches(std::span<const Eigen::Vector3d> points,
+                                              std::span<const double> places) {
   if (points.size() != places.size())
     throw Error(
         std::to_string(places.size()) + " places for " + std::to_string(points.size()) + " points",
         "neighbour_pitches", "one each");
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return places[i] < places[j]; });
-  std::vector<double> out;
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return places[i] < places[j]; });
+  std::vector<NeighbourPitch> out;
   for (std::size_t k = 1; k < order.size(); ++k)
-    out.push_back((points[order[k]] - points[order[k - 1]]).norm());
+    out.push_back({order[k - 1], order[k], (points[order[k]] - points[order[k - 1]]).norm()});
   return out;
 }
 

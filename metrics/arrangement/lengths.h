@@ -18,11 +18,17 @@ double attachment_gap(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const 
 double distance_from_segment(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                              const Eigen::Vector3d& b);
 
-/// Distances of neighbours in a row of points (m): one fewer than there are points.
+/// Two neighbours in a row of points, by their indices, and their distance (m).
+struct NeighbourPitch {
+  int before = 0, after = 0;
+  double distance = 0;
+};
+
+/// Neighbours in a row of points, along it: one pair fewer than there are points.
 ///
 /// @param places  as many: where each is in the row; equal ones keep their order
 /// @throws Error  when sizes differ
-std::vector<double> neighbour_pitches(std::span<const Eigen::Vector3d> points,
-                                      std::span<const double> places);
+std::vector<NeighbourPitch> neighbour_pitches(std::span<const Eigen::Vector3d> points,
+                                              std::span<const double> places);
 
 }  // namespace geoprior

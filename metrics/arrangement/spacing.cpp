@@ -30,10 +30,12 @@ SpacingCheck check_spacing(std::span<const Eigen::Vector3d> points, std::span<co
   require_extents(points.size(), extents);
   std::vector<Eigen::Vector3d> seen;
   std::vector<double> extent;
+  std::vector<int> number;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (extents[i] == 0) continue;
     seen.push_back(points[i]);
     extent.push_back(extents[i]);
+    number.push_back(static_cast<int>(i));
   }
   SpacingCheck out;
   if (seen.size() < 2) return out;
@@ -51,7 +53,7 @@ SpacingCheck check_spacing(std::span<const Eigen::Vector3d> points, std::span<co
       if (j <= i) return;
       const double sum = extent[i] + extent[j];
       smallest = std::min(smallest, distance / sum);
-      if (distance < sum - tolerance) ++out.too_close;
+      if (distance < sum - tolerance) out.too_close.emplace_back(number[i], number[j]);
     });
   }
   out.smallest_ratio = smallest;

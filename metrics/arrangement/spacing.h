@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace geoprior {
@@ -11,7 +12,8 @@ namespace geoprior {
 /// the sum of their extents (m).
 struct SpacingCheck {
   std::optional<double> smallest_ratio;  ///< of a pair: distance over the sum of the extents
-  int too_close = 0;                     ///< pairs whose distance falls short by over the tolerance
+  /// Pairs (lower, higher) of points whose distance falls short by over the tolerance.
+  std::vector<std::pair<int, int>> too_close;
 };
 
 /// Exact, all pairs considered: a grid leaves out those that cannot count.

@@ -33,7 +33,8 @@ SheetFolds sheet_folds(const CurvatureFit& fit, const Eigen::MatrixX2d& pattern,
 ///
 /// 0 for cylinders and cones, whatever their mesh; 1 for pleats closer than the disc is wide. A
 /// sheet that bends to both sides within a disc counts too, so that shares of two meshes are
-/// compared by one radius. 0 for a flat sheet.
+/// compared by one radius. 0 for a flat sheet. A cylinder along the diagonals of oblongs of 2 to 1
+/// whose diagonals alternate is misjudged: 0.5.
 ///
 /// @param radius  of the discs, whose centres are a square grid of half the radius (m)
 /// @throws Error  on a radius that is not positive, or with more than 2^24 discs

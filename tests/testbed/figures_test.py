@@ -306,6 +306,14 @@ class Pictures(Scratch):
         self.assertEqual(again, content, "a second stamp takes the place of the first")
         self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
 
+    def test_several_above_one_caption_belong_to_it_in_their_order(self):
+        text = ("![a](a.png)\n\n![b](b.png)\n\n![c](c.png)\n\n<!-- begin: figure test/knee one.png two.png -->\n"
+                "<!-- end -->\n\n![d](d.png)\n\n<!-- begin: figure test/elbow -->\n<!-- end -->\n"
+                "<!-- begin: figure test/hip -->\n<!-- end -->\n")
+        found = {path.name: owner for path, owner in pictures.owners({"page.md": text}, self.root).items()}
+        self.assertEqual(found, {"b.png": ("test/knee", "one.png"), "c.png": ("test/knee", "two.png"),
+                                 "d.png": ("test/elbow", "figure.png")})
+
     def test_of_another_run_or_of_none_are_named(self):
         self.picture.write_bytes(pictures.stamped(self.ONE_PIXEL, "knee.png", "f" * 64))
         self.assertRegex(self.problem(), "docs/knee.png: is a picture of run f{12}, the record of test/knee is of ")

@@ -23,7 +23,7 @@ def bare(finding, before="# Page\n\n## What was found\n\n"):
 
 
 class Repository(unittest.TestCase):
-    def test_has_no_bare_number_but_where_some_are_allowed_still(self):
+    def test_has_no_bare_number(self):
         self.assertEqual(findings.problems(figures.page_texts(REPOSITORY)), [])
 
     def test_has_findings(self):
@@ -58,12 +58,6 @@ class Findings(unittest.TestCase):
             self.assertEqual(bare(finding), numbers, finding)
         self.assertEqual(bare("12", before="# Page\n\n## Limits\n\n"), [])
         self.assertEqual(bare("12", before="# Page\n\n## Results\n\n"), ["12"])
-
-    def test_allowed_numbers_only_fall(self):
-        texts = {"page.md": "## Results\n\n12 and 13\n"}
-        self.assertEqual(findings.problems(texts, {"page.md": 2}), [])
-        self.assertEqual(len(findings.problems(texts, {"page.md": 1})), 2)
-        self.assertRegex(findings.problems(texts, {"page.md": 3})[0], "has 2 bare numbers, 3 are allowed")
 
     def test_of_quick_runs_are_refused(self):
         for finding in ("In quick runs it is less.", "`geoprior run paper/bend --quick`"):

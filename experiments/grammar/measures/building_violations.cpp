@@ -66,22 +66,25 @@ void measure_walls(const RecordedState& state, int storey, ElementGroup walls,
   const RecordedElement* box = state.find(storey);
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const WallCorners wall(*walls[i]);
-    out.wall_angle.add(tilt(wall.start, wall.top_start));
-    out.wall_angle.add(tilt(wall.end, wall.top_end));
+    const int number = walls[i]->number;
+    out.wall_angle.add(tilt(wall.start, wall.top_start), {number});
+    out.wall_angle.add(tilt(wall.end, wall.top_end), {number});
     if (box != nullptr)
       for (const Vector3d& corner : walls[i]->keys) {
         double nearest = std::numeric_limits<double>::infinity();
         for (const Vector3d& x : box->keys) nearest = std::min(nearest, (x - corner).norm());
-        out.wall_gap.add(nearest);
+        out.wall_gap.add(nearest, {number});
       }
     const RecordedElement* next = walls[(i + 1) % walls.size()];
     // Sides are numbered 0 to 3 around the storey.
     if (std::fmod(side(walls[i]) + 1, 4) != side(next)) continue;
     const WallCorners other(*next);
-    out.wall_angle.add(right_angle_error(wall.end - wall.start, other.end - other.start));
+    out.wall_angle.add(right_angle_error(wall.end - wall.start, other.end - other.start),
+                       {number, next->number});
     out.wall_angle.add(
-        right_angle_error(wall.top_end - wall.top_start, other.top_end - other.top_start));
-    out.wall_gap.add(corner_gap(wall, other));
+        right_angle_error(wall.top_end - wall.top_start, other.top_end - other.top_start),
+        {number, next->number});
+    out.wall_gap.add(corner_gap(wall, other), {number, next->number});
   }
 }
 
@@ -102,7 +105,8 @@ ElementGroup from_the_ground(ElementGroup storeys) {
 void measure_roof(const RecordedElement& roof, const RecordedElement& storey,
                   BuildingViolations& out) {
   const double below = mean_corner_height({&storey.keys[4], 4});
-  for (int c = 0; c < 4; ++c) out.storey_gap.add(std::abs(roof.keys.at(c).z() - below));
+  for (int c = 0; c < 4; ++c)
+    out.storey_gap.add(std::abs(roof.keys.at(c).z() - below), {roof.number, storey.number});
 }
 
 void measure_storeys(const RecordedState& state, int building, const ElementGroup& storeys,
@@ -112,16 +116,19 @@ void measure_storeys(const RecordedState& state, int building, const ElementGrou
     const RecordedElement& storey = *storeys[i];
     for (int c = 0; c < 4; ++c)
       out.storey_height.add(
-          out_of_range(storey.keys[c + 4].z() - storey.keys[c].z(), kStoreyLow, kStoreyHigh));
+          out_of_range(storey.keys[c + 4].z() - storey.keys[c].z(), kStoreyLow, kStoreyHigh),
+          {storey.number});
     if (i == 0 && (ground == nullptr || ground->keys.empty())) continue;
     const double below =
         i == 0 ? ground->keys[0].z() : mean_corner_height({&storeys[i - 1]->keys[4], 4});
-    for (int c = 0; c < 4; ++c) out.storey_gap.add(std::abs(storey.keys[c].z() - below));
+    const int under = i == 0 ? storey.number : storeys[i - 1]->number;
+    for (int c = 0; c < 4; ++c)
+      out.storey_gap.add(std::abs(storey.keys[c].z() - below), {storey.number, under});
     if (i == 0) continue;
     for (int side = 0; side < 4; ++side) {
       const Eigen::Vector2d shift =
           side_middle(storey, side, 0) - side_middle(*storeys[i - 1], side, 4);
-      out.overhang.add(out_of_range(shift.norm(), 0, kOverhangLimit));
+      out.overhang.add(out_of_range(shift.norm(), 0, kOverhangLimit), {storey.number, under});
     }
   }
 }
@@ -146,10 +153,11 @@ void measure_openings(const RecordedElement& wall, const ElementGroup& openings,
       outside = std::max({outside, out_of_range(x.dot(along), 0, length),
                           out_of_range(x.dot(up), 0, rise.dot(up)), std::abs(x.dot(across))});
     }
-    out.window_outside.add(outside);
+    out.window_outside.add(outside, {opening->number});
   }
-  for (const double pitch : neighbour_pitches(centres, places))
-    out.window_pitch.add(out_of_range(pitch, kPitchLow, kPitchHigh));
+  for (const auto& [before, after, pitch] : neighbour_pitches(centres, places))
+    out.window_pitch.add(out_of_range(pitch, kPitchLow, kPitchHigh),
+                         {openings[before]->number, openings[after]->number});
 }
 
 /// Doors of a building, whose storeys' walls have them.
@@ -162,7 +170,7 @@ void measure_doors(const RecordedState& state, const std::map<int, double>& bott
     double lowest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 1; k < door->keys.size(); ++k)
       lowest = std::min(lowest, door->keys[k].z());
-    out.door_gap.add(std::abs(lowest - bottoms.at(storey->parent)));
+    out.door_gap.add(std::abs(lowest - bottoms.at(storey->parent)), {door->number});
   }
 }
 

@@ -34,6 +34,26 @@ std::optional<Deviation> deviation_of(const RecordedState& state, const Recorded
   return Deviation{std::sqrt(out.of_state / count), std::sqrt(out.of_nothing / count)};
 }
 
+std::optional<Deviation> unserved_deviation_of(const RecordedState& state,
+                                               const RecordedState& rest, const AskedPlaces& asked,
+                                               const std::set<int>& broken) {
+  Deviation out;
+  int count = 0;
+  for (const RecordedElement& before : rest.elements()) {
+    if (before.keys.empty()) continue;
+    const std::vector<Vector3d> wanted = asked.keys(before.number);
+    const double at_rest = mean_square_distance(before.keys, wanted);
+    const RecordedElement* now = state.find_same(before);
+    double own = now != nullptr ? mean_square_distance(now->keys, wanted) : at_rest;
+    if (broken.contains(before.number)) own = std::max(own, at_rest);
+    out.of_state += own;
+    out.of_nothing += at_rest;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return Deviation{std::sqrt(out.of_state / count), std::sqrt(out.of_nothing / count)};
+}
+
 Difference difference_of(const RecordedState& state, const RecordedState& other) {
   Difference out;
   int matched = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,15 @@ struct Deviation {
 /// Absent without such elements.
 std::optional<Deviation> deviation_of(const RecordedState& state, const RecordedState& rest,
                                       const AskedPlaces& asked);
+
+/// The same of all that were there at rest, where only what keeps its constraints counts as served:
+/// an element that breaks one, or is gone, counts as if it had stayed at rest, a broken one as it
+/// is where that is farther. It is `of_nothing` for a state that does nothing, and for one that
+/// breaks everything; elements that there were not at rest are not seen.
+/// @param broken  numbers of elements
+std::optional<Deviation> unserved_deviation_of(const RecordedState& state,
+                                               const RecordedState& rest, const AskedPlaces& asked,
+                                               const std::set<int>& broken);
 
 /// Two states, key point by key point.
 struct Difference {

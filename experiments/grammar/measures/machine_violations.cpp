@@ -32,7 +32,7 @@ double angle_deg(const Vector3d& a, const Vector3d& b) {
 }
 
 void add_shape(const std::vector<Vector3d>& keys, const PartBox& now, const PartBox& rest,
-               bool stretches, Tally& shape) {
+               bool stretches, int number, Tally& shape) {
   double worst = 0;
   for (int k = 0; k < kCorners; ++k) {
     Vector3d x = now.corner;
@@ -50,12 +50,12 @@ void add_shape(const std::vector<Vector3d>& keys, const PartBox& now, const Part
       worst = std::max(
           worst, std::abs(now.edge[axis].dot(now.edge[(axis + 1) % 3])) / std::max(length, other));
   }
-  shape.add(worst);
+  shape.add(worst, {number});
 }
 
-void add_turn(const PartBox& now, const PartBox& rest, Tally& turn) {
+void add_turn(const PartBox& now, const PartBox& rest, int number, Tally& turn) {
   for (int axis = 0; axis < 3; ++axis)
-    if (rest.edge[axis].norm() > 0) turn.add(angle_deg(rest.edge[axis], now.edge[axis]));
+    if (rest.edge[axis].norm() > 0) turn.add(angle_deg(rest.edge[axis], now.edge[axis]), {number});
 }
 
 /// The part of a shift across an axis, or along it.
@@ -72,23 +72,29 @@ MachineViolations machine_violations(const RecordedState& state, const RecordedS
                                      bool imported) {
   MachineViolations out;
   if (!imported) return out;
-  std::map<int, std::pair<Vector3d, Vector3d>> link_before;  // by parent: the one before, at rest
+  struct Link {
+    int number;
+    Vector3d middle, at_rest;
+  };
+  std::map<int, Link> link_before;  // by parent
   for (const RecordedElement& element : state.elements()) {
     const RecordedElement* was = rest.find_same(element);
     if (was == nullptr || element.keys.size() != kCorners) continue;
     const auto is = [&](const char* pattern) { return matches(pattern, state.type_name(element)); };
     const PartBox now = box_of_corners(element.keys), before = box_of_corners(was->keys);
     const Vector3d shift = now.middle - before.middle;
-    add_shape(element.keys, now, before, is("body*"), out.shape);
-    if (is("body*") || is("Piston*") || is("Lifter*")) add_turn(now, before, out.turn);
-    if (is("Piston*")) out.slide.add(strayed(shift, before.edge[0], false));
-    if (is("Lifter*")) out.slide.add(strayed(shift, before.edge[1], false));
-    if (is("rod*")) out.slide.add(strayed(shift, before.edge[1], true));
+    const int number = element.number;
+    add_shape(element.keys, now, before, is("body*"), number, out.shape);
+    if (is("body*") || is("Piston*") || is("Lifter*")) add_turn(now, before, number, out.turn);
+    if (is("Piston*")) out.slide.add(strayed(shift, before.edge[0], false), {number});
+    if (is("Lifter*")) out.slide.add(strayed(shift, before.edge[1], false), {number});
+    if (is("rod*")) out.slide.add(strayed(shift, before.edge[1], true), {number});
     if (!is("Spring_Link*")) continue;
     if (const auto last = link_before.find(element.parent); last != link_before.end())
-      out.links.add(std::abs((now.middle - last->second.first).norm() -
-                             (before.middle - last->second.second).norm()));
-    link_before.insert_or_assign(element.parent, std::pair(now.middle, before.middle));
+      out.links.add(std::abs((now.middle - last->second.middle).norm() -
+                             (before.middle - last->second.at_rest).norm()),
+                    {last->second.number, number});
+    link_before.insert_or_assign(element.parent, Link{number, now.middle, before.middle});
   }
   return out;
 }

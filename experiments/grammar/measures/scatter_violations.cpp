@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 struct ApartGroup {
   std::vector<Vector3d> places;
   std::vector<double> extents;  ///< m
+  std::vector<int> numbers;
 };
 
 /// What an element keeps clear around its first key point (m): its size times its radius; of a
@@ -42,6 +43,7 @@ std::vector<ApartGroup> groups_apart(const RecordedState& state) {
   const auto add = [&](const RecordedElement& e, ApartGroup& group) {
     group.places.push_back(e.keys.at(0));
     group.extents.push_back(kept_clear(state, e));
+    group.numbers.push_back(e.number);
   };
   for (const char* type : {"item", "grain"})
     for (const RecordedElement* e : state.of_type(type)) add(*e, sets[e->parent]);
@@ -60,7 +62,10 @@ void measure_spacing(const RecordedState& state, ScatterViolations& out) {
     const SpacingCheck check = check_spacing(group.places, group.extents, Tally::kHolds);
     if (!check.smallest_ratio) continue;
     out.spacing = std::min(out.spacing.value_or(*check.smallest_ratio), *check.smallest_ratio);
-    out.too_close.broken += check.too_close;
+    out.too_close.broken += static_cast<int>(check.too_close.size());
+    for (const auto& [i, j] : check.too_close)
+      out.too_close.elements.insert(out.too_close.elements.end(),
+                                    {group.numbers[i], group.numbers[j]});
   }
   if (out.spacing) out.too_close.worst = std::max(0.0, 1 - *out.spacing);
 }
@@ -82,12 +87,13 @@ std::optional<TerrainHeights> recorded_terrain(const RecordedState& state) {
 void measure_house(const RecordedState& state, const RecordedElement& house,
                    const TerrainHeights& terrain, ScatterViolations& out) {
   const auto& x = house.keys;
-  out.ground_gap.add(std::abs(terrain.gap(x.at(0))));
+  out.ground_gap.add(std::abs(terrain.gap(x.at(0))), {house.number});
   const double plinth = state.parameter(house, "plinth");
-  for (int c = 1; c <= 4; ++c) out.ground_gap.add(std::max(0.0, terrain.gap(x.at(c)) - plinth));
+  for (int c = 1; c <= 4; ++c)
+    out.ground_gap.add(std::max(0.0, terrain.gap(x.at(c)) - plinth), {house.number});
   // The ridge stands over the middle, and the floor is level.
-  out.upright.add(tilt(x[0], x.at(5)));
-  out.upright.add(tilt(Vector3d::Zero(), (x[2] - x[1]).cross(x[4] - x[1])));
+  out.upright.add(tilt(x[0], x.at(5)), {house.number});
+  out.upright.add(tilt(Vector3d::Zero(), (x[2] - x[1]).cross(x[4] - x[1])), {house.number});
 }
 
 void measure_path(const RecordedState& state, const RecordedElement& path,
@@ -96,13 +102,16 @@ void measure_path(const RecordedState& state, const RecordedElement& path,
   const double pitch = state.parameter(path, "pitch");
   std::vector<Vector3d> places;
   std::vector<double> along;
+  std::vector<int> numbers;
   for (const RecordedElement* stone : stones) {
     if (state.parameter(*stone, "size") == 0) continue;
     places.push_back(stone->keys.at(0));
     along.push_back(state.parameter(*stone, "along"));
+    numbers.push_back(stone->number);
   }
-  for (const double distance : neighbour_pitches(places, along))
-    out.add(out_of_range(distance, kLeast * pitch, kMost * pitch));
+  for (const auto& [before, after, distance] : neighbour_pitches(places, along))
+    out.add(out_of_range(distance, kLeast * pitch, kMost * pitch),
+            {numbers[before], numbers[after]});
 }
 
 }  // namespace
@@ -111,19 +120,19 @@ ScatterViolations scatter_violations(const RecordedState& state) {
   ScatterViolations out;
   measure_spacing(state, out);
   for (const RecordedElement* e : state.of_type("conifer")) {
-    out.ground_gap.add(std::abs(e->keys.at(0).z()));
-    out.upright.add(tilt(e->keys[0], e->keys.at(1)));
+    out.ground_gap.add(std::abs(e->keys.at(0).z()), {e->number});
+    out.upright.add(tilt(e->keys[0], e->keys.at(1)), {e->number});
   }
   const auto terrain = recorded_terrain(state);
   if (!terrain) return out;
   for (const RecordedElement* e : state.of_type("pine")) {
-    out.ground_gap.add(std::abs(terrain->gap(e->keys.at(0))));
-    out.upright.add(tilt(e->keys[0], e->keys.at(1)));
+    out.ground_gap.add(std::abs(terrain->gap(e->keys.at(0))), {e->number});
+    out.upright.add(tilt(e->keys[0], e->keys.at(1)), {e->number});
   }
   for (const RecordedElement* e : state.of_type("house")) measure_house(state, *e, *terrain, out);
   std::map<int, std::vector<const RecordedElement*>> paths;
   for (const RecordedElement* e : state.of_type("stone")) {
-    out.ground_gap.add(std::abs(terrain->gap(e->keys.at(0))));
+    out.ground_gap.add(std::abs(terrain->gap(e->keys.at(0))), {e->number});
     paths[e->parent].push_back(e);
   }
   for (const auto& [number, stones] : paths)

@@ -19,9 +19,9 @@ void measure_attachment(const RecordedState& state, const RecordedElement& branc
   if (parent == nullptr || parent->keys.empty()) return;
   const double attach = state.parameter(branch, "attach");
   const Eigen::Vector3d& base = branch.keys.at(0);
-  out.add(parent->keys.size() == 1
-              ? (base - parent->keys[0]).norm()
-              : attachment_gap(base, parent->keys[0], parent->keys[1], attach));
+  out.add(parent->keys.size() == 1 ? (base - parent->keys[0]).norm()
+                                   : attachment_gap(base, parent->keys[0], parent->keys[1], attach),
+          {branch.number});
 }
 
 }  // namespace
@@ -35,7 +35,8 @@ TreeViolations tree_violations(const RecordedState& state, const RecordedState& 
   std::vector<double> attach;
   for (const RecordedElement* branch : branches) {
     const double mean = level_mean(state, *branch, means);
-    out.length.add(out_of_range(branch_length(*branch), kShortest * mean, kLongest * mean));
+    out.length.add(out_of_range(branch_length(*branch), kShortest * mean, kLongest * mean),
+                   {branch->number});
     measure_attachment(state, *branch, out.attachment);
     axes.push_back({branch->keys.at(0), branch->keys.at(1), state.parameter(*branch, "radius")});
     attach.push_back(state.parameter(*branch, "attach"));
@@ -45,9 +46,12 @@ TreeViolations tree_violations(const RecordedState& state, const RecordedState& 
     if (a.parent == b.number || b.parent == a.number) return true;
     return a.parent == b.parent && std::abs(attach[i] - attach[j]) <= kSameNode;
   };
-  const int crossed = static_cast<int>(crossings(axes, Tally::kHolds, meet).size());
-  out.crossings.worst = crossed;
-  out.crossings.broken = crossed;
+  const auto crossed = crossings(axes, Tally::kHolds, meet);
+  out.crossings.broken = static_cast<int>(crossed.size());
+  out.crossings.worst = out.crossings.broken;
+  for (const auto& [i, j] : crossed)
+    out.crossings.elements.insert(out.crossings.elements.end(),
+                                  {branches[i]->number, branches[j]->number});
   return out;
 }
 

@@ -1,24 +1,34 @@
 #pragma once
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
+#include <vector>
 
 #include "experiments/grammar/measures/recorded_state.h"
 
 namespace geoprior::grammar {
 
-/// Constraints of one kind: how far the worst is broken, how many are.
+/// Constraints of one kind: how far the worst is broken, how many are, and of which elements.
+///
+/// A constraint that ties an element to what it belongs to (a branch to its parent, a window to its
+/// wall, what stands to its ground) is the element's own; one of two that are alike (branches that
+/// cross, neighbours too close, storeys on each other) is of both.
 struct Tally {
   /// A constraint holds up to so much of its unit: round-off of coordinates of some tens of metres.
   static constexpr double kHolds = 1e-9;
 
   std::optional<double> worst;  ///< absent where the object has no such constraint
   int broken = 0;
+  std::vector<int> elements;  ///< numbers of those of the broken ones, once for each
 
   /// A number that is none breaks the constraint.
-  void add(double violation) {
+  /// @param of  numbers of the elements whose constraint it is
+  void add(double violation, std::initializer_list<int> of) {
     if (!worst || !(violation <= *worst)) worst = violation;
-    if (!(violation <= kHolds)) ++broken;
+    if (violation <= kHolds) return;
+    ++broken;
+    elements.insert(elements.end(), of);
   }
 };
 

@@ -59,6 +59,7 @@ TEST(GrammarMachineViolations, ShiftIsMeasuredAcrossWhereAPartSlides) {
   // Across x of the piston sqrt(.2^2 + .3^2), across y of the lifter less, along y of the rod .2.
   EXPECT_NEAR(*v.slide.worst, std::sqrt(0.13), 1e-12);
   EXPECT_EQ(v.slide.broken, 3);
+  EXPECT_EQ(v.slide.elements.size(), 3);
   EXPECT_NEAR(*v.shape.worst, 0, 1e-12);
   EXPECT_NEAR(*v.links.worst, 0, 1e-12);
 }
@@ -73,6 +74,7 @@ TEST(GrammarMachineViolations, EdgesOfAllButTheBodyKeepTheirLength) {
   EXPECT_NEAR(*v.shape.worst, 1, 1e-12);  // 2 m became 3 m
   EXPECT_EQ(v.shape.broken, 5);
   EXPECT_NEAR(*v.links.worst, 1.5, 1e-12);  // 3 m became 4.5 m
+  EXPECT_EQ(v.links.elements.size(), 2 * v.links.broken);
 }
 
 TEST(GrammarMachineViolations, TurnIsTheAngleOfTheEdges) {

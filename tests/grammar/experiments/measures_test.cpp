@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,29 @@ TEST(GrammarMeasures, LostElementsDoNotCountInTheDeviation) {
   EXPECT_EQ(changes.lost, 1);
   EXPECT_EQ(changes.touched, 1);
   EXPECT_EQ(element_changes(rest, state).added, 1);
+}
+
+TEST(GrammarMeasures, UnservedIsWhatBreaksAConstraintOrIsGone) {
+  const Hierarchy h = small_tree();
+  const RecordedState rest(h);
+  const AskedPlaces asked(h, {}, shared(shifted(3, 0, 4)), 0);
+  const auto unserved = [&](const RecordedState& state, const std::set<int>& broken) {
+    const Deviation out = *unserved_deviation_of(state, rest, asked, broken);
+    EXPECT_DOUBLE_EQ(out.of_nothing, 5);
+    return out.of_state;
+  };
+  const RecordedState followed = moved_state(h, shifted(3, 0, 4));
+  EXPECT_DOUBLE_EQ(unserved(rest, {}), 5);
+  EXPECT_NEAR(unserved(followed, {}), 0, 1e-15);
+  // One of four elements counts as if it had stayed.
+  EXPECT_DOUBLE_EQ(unserved(followed, {3}), std::sqrt(25. / 4));
+  EXPECT_DOUBLE_EQ(unserved(followed, {0, 1, 2, 3}), 5);
+  // What breaks a constraint and goes the wrong way is as far as it is.
+  const RecordedState away = moved_state(h, shifted(-3, 0, -4));
+  EXPECT_DOUBLE_EQ(unserved(away, {0, 1, 2, 3}), 10);
+  Hierarchy fewer = h;
+  fewer.set_present(3, false);
+  EXPECT_DOUBLE_EQ(unserved(moved_state(fewer, shifted(3, 0, 4)), {}), std::sqrt(25. / 4));
 }
 
 TEST(GrammarMeasures, AskedPlacesAreEditsThenTheMap) {
@@ -318,6 +342,17 @@ TEST(GrammarMeasures, OfFreeFormDeformationAreThoseOfTheGesture) {
   EXPECT_EQ(suite.gestures, 4);
   EXPECT_EQ(*suite.broken_gestures, 4);
   EXPECT_NEAR(*suite.mean_deviation_ratio, 0, 1e-14);
+  // The side branch, one of four elements, is off its parent all the while, and was to move 0.25 m.
+  EXPECT_EQ(constraint_measures(scene, frames.back())->broken_elements(), std::set<int>{3});
+  double asked = 0;
+  for (std::size_t step = 2; step < frames.size(); ++step)
+    asked += fidelity_measures(scene, frames[step])->of_nothing;
+  EXPECT_NEAR(*suite.unserved_ratio, 4 * 0.125 / asked, 1e-12);
+  // Doing nothing breaks nothing.
+  std::vector<Frame> at_rest;
+  for (std::size_t step = 0; step < frames.size(); ++step)
+    at_rest.push_back(moved_frame(scene.rest, kStay, static_cast<int>(step)));
+  EXPECT_EQ(*suite_measures(scene, FramesInMemory(at_rest))->unserved_ratio, 1);
 }
 
 TEST(GrammarMeasures, SeeWhatASingleFrameDoes) {
@@ -367,6 +402,9 @@ TEST(GrammarMeasures, OfASampleAreThoseOfItsElementsAlone) {
   const Frame frame = moved_frame(sample, kStay, 1);
   EXPECT_FALSE(constraint_measures(scene, frame));
   EXPECT_FALSE(change_measures(scene, frame));
+  scene.steps[1] = {Step::Kind::gesture, 0, 1.0, 0.0};
+  EXPECT_FALSE(suite_measures(scene, FramesInMemory({frame}))->unserved_ratio);
+  scene.steps[1] = {Step::Kind::edit, 0};
   // Of three elements one was to move by 0.25 m.
   EXPECT_DOUBLE_EQ(fidelity_measures(scene, frame)->deviation, 0.25 / std::sqrt(3));
 }

@@ -22,6 +22,7 @@ using samples::lattice_set;
 using samples::moved_state;
 using samples::scaled;
 using samples::small_tree;
+using Numbers = std::vector<int>;
 
 /// x' = x + share of the coordinate of that number.
 AffineMap sheared(int coordinate, double share) {
@@ -118,6 +119,8 @@ TEST(GrammarViolations, AStretchUpwardsBreaksHeights) {
   const BuildingViolations b = building_violations(moved_state(h, scaled(1, 1, 2)));
   EXPECT_NEAR(*b.storey_height.worst, 2 * plain.storey_height - 4.5, 1e-12);
   EXPECT_EQ(b.storey_height.broken, 4 * plain.storeys);
+  const int storey = h.find_type("storey");
+  for (const int number : b.storey_height.elements) EXPECT_EQ(h.type_number(number), storey);
   EXPECT_NEAR(*b.storey_gap.worst, 0, 1e-12);
 }
 
@@ -145,7 +148,7 @@ TEST(GrammarViolations, AWindowThatIsMovedSticksOut) {
   h.set_position(window, h.position(window) + 0.25 * across);
   const BuildingViolations b = building_violations(RecordedState(h));
   EXPECT_NEAR(*b.window_outside.worst, 0.25, 1e-12);
-  EXPECT_EQ(b.window_outside.broken, 1);
+  EXPECT_EQ(b.window_outside.elements, Numbers{window});
 }
 
 TEST(GrammarViolations, ALargerTreeHasTooLongBranches) {
@@ -154,6 +157,7 @@ TEST(GrammarViolations, ALargerTreeHasTooLongBranches) {
   const TreeViolations t = tree_violations(moved_state(h, scaled(2, 2, 2)), rest);
   EXPECT_NEAR(*t.length.worst, 0.5, 1e-14);
   EXPECT_EQ(t.length.broken, 3);
+  EXPECT_EQ(t.length.elements, (Numbers{1, 2, 3}));
   // An affine map keeps what lies on an axis at its place.
   EXPECT_NEAR(*t.attachment.worst, 0, 1e-14);
 }
@@ -164,7 +168,9 @@ TEST(GrammarViolations, ABranchThatIsMovedHangsInTheAir) {
   h.set_position(3, {0, 0.3, 0.9});
   const TreeViolations t = tree_violations(RecordedState(h), RecordedState(at_rest));
   EXPECT_NEAR(*t.attachment.worst, 0.5, 1e-14);
+  // It is the branch that hangs, not what it is to hang on.
   EXPECT_EQ(t.attachment.broken, 1);
+  EXPECT_EQ(t.attachment.elements, Numbers{3});
 }
 
 TEST(GrammarViolations, BranchesThatMeetInANodeDoNotCross) {
@@ -178,7 +184,9 @@ TEST(GrammarViolations, BranchesThatMeetInANodeDoNotCross) {
   meeting.set_pose(3, meeting.pose(2));
   EXPECT_EQ(*tree_violations(RecordedState(meeting), rest).crossings.worst, 0);
   meeting.set_parameter(3, BranchParameter::kAttach, 0.5);
-  EXPECT_EQ(*tree_violations(RecordedState(meeting), rest).crossings.worst, 1);
+  const Tally crossings = tree_violations(RecordedState(meeting), rest).crossings;
+  EXPECT_EQ(*crossings.worst, 1);
+  EXPECT_EQ(crossings.elements, (Numbers{2, 3}));
 }
 
 TEST(GrammarViolations, SpacingIsTheDistanceOverSizesTimesRadii) {
@@ -189,6 +197,7 @@ TEST(GrammarViolations, SpacingIsTheDistanceOverSizesTimesRadii) {
   EXPECT_DOUBLE_EQ(*s.spacing, 0.9);
   EXPECT_NEAR(*s.too_close.worst, 0.1, 1e-15);
   EXPECT_EQ(s.too_close.broken, 3 * 9 * 2);
+  EXPECT_EQ(s.too_close.elements.size(), 2 * 3 * 9 * 2);
 }
 
 TEST(GrammarViolations, WhatStandsOnASlopeStandsUprightOnIt) {
@@ -209,6 +218,7 @@ TEST(GrammarViolations, WhatIsLiftedLeavesTheGround) {
   const ScatterViolations s = scatter_violations(RecordedState(h));
   EXPECT_NEAR(*s.ground_gap.worst, 0.4, 1e-14);
   EXPECT_EQ(s.ground_gap.broken, 2);
+  EXPECT_EQ(s.ground_gap.elements, (Numbers{4, 4}));
 }
 
 TEST(GrammarViolations, WhatLeansIsNotUpright) {
@@ -217,10 +227,11 @@ TEST(GrammarViolations, WhatLeansIsNotUpright) {
   h.set_pose(3, {h.position(3), lean});
   EXPECT_NEAR(*scatter_violations(RecordedState(h)).upright.worst, 0.1 * 180 / std::numbers::pi,
               1e-12);
+  EXPECT_EQ(scatter_violations(RecordedState(h)).upright.elements, Numbers{3});
   h.set_position(4, {1, 0, 0.5});
   const ScatterViolations s = scatter_violations(RecordedState(h));
   EXPECT_DOUBLE_EQ(*s.spacing, std::hypot(3, 1.5) / 6);
-  EXPECT_EQ(s.too_close.broken, 2);
+  EXPECT_EQ(s.too_close.elements, (Numbers{2, 4, 3, 4}));
 }
 
 // Stones 0.9, 0.4 and 1.5 m apart along a path of pitch 1 m, given in another order; the one of
@@ -244,7 +255,9 @@ TEST(GrammarViolations, StonesAreApartByTheirPitch) {
   add(0.9, 1);
   const ScatterViolations s = scatter_violations(RecordedState(h));
   EXPECT_NEAR(*s.path_pitch.worst, 0.2, 1e-15);
-  EXPECT_EQ(s.path_pitch.broken, 2);
+  // The path is element 5, its stones are 6 to 10: the second and third, the third and fourth along
+  // it.
+  EXPECT_EQ(s.path_pitch.elements, (Numbers{10, 6, 6, 8}));
   EXPECT_EQ(s.ground_gap.broken, 0);
 }
 

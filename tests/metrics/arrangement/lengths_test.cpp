@@ -36,7 +36,15 @@ TEST(ArrangementLengths, DistanceFromASegmentEndsAtItsEnds) {
 
 TEST(ArrangementLengths, PitchesAreOfNeighboursInTheOrderOfTheirPlaces) {
   const std::vector<Vector3d> x{{5, 0, 0}, {0, 0, 0}, {2, 0, 0}};
-  EXPECT_EQ(neighbour_pitches(x, std::vector<double>{5, 0, 2}), (std::vector<double>{2, 3}));
+  const auto pitches = neighbour_pitches(x, std::vector<double>{5, 0, 2});
+  ASSERT_EQ(pitches.size(), 2);
+  const auto expect_pitch = [](const NeighbourPitch& p, int before, int after, double distance) {
+    EXPECT_EQ(p.before, before);
+    EXPECT_EQ(p.after, after);
+    EXPECT_EQ(p.distance, distance);
+  };
+  expect_pitch(pitches[0], 1, 2, 2);
+  expect_pitch(pitches[1], 2, 0, 3);
   EXPECT_TRUE(neighbour_pitches(std::vector<Vector3d>{{1, 1, 1}}, std::vector<double>{0}).empty());
   test::expect_error([&] { (void)neighbour_pitches(x, std::vector<double>{1}); },
                      {"1 places for 3 points"});

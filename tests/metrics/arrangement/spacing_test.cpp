@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "core/random.h"
@@ -36,17 +38,20 @@ TEST(ArrangementSpacing, OfALatticeIsItsConstantOverTheExtents) {
   const std::vector<Vector3d> x = cubic_lattice(6);
   const std::vector<double> touching(x.size(), 0.5), apart(x.size(), 0.25), close(x.size(), 0.625);
   EXPECT_EQ(*check_spacing(x, touching, 1e-9).smallest_ratio, 1);
-  EXPECT_EQ(check_spacing(x, touching, 1e-9).too_close, 0);
+  EXPECT_TRUE(check_spacing(x, touching, 1e-9).too_close.empty());
   EXPECT_EQ(*check_spacing(x, apart, 1e-9).smallest_ratio, 2);
   // 3 n^2 (n - 1) pairs are one apart; the diagonals of faces are longer than 1.25.
   EXPECT_EQ(*check_spacing(x, close, 1e-9).smallest_ratio, 0.8);
-  EXPECT_EQ(check_spacing(x, close, 1e-9).too_close, 3 * 36 * 5);
+  EXPECT_EQ(check_spacing(x, close, 1e-9).too_close.size(), 3 * 36 * 5);
 }
 
 TEST(ArrangementSpacing, ElementsWithoutExtentAreNotSeen) {
   const std::vector<Vector3d> x{{0, 0, 0}, {0.1, 0, 0}, {2, 0, 0}};
   EXPECT_EQ(*check_spacing(x, std::vector<double>{0.5, 0, 0.5}, 0).smallest_ratio, 2);
   EXPECT_FALSE(check_spacing(x, std::vector<double>{0.5, 0, 0}, 0).smallest_ratio);
+  // Pairs have the numbers of the points, those that are not seen counted.
+  const SpacingCheck close = check_spacing(x, std::vector<double>{1.5, 0, 1.5}, 0);
+  EXPECT_EQ(close.too_close, (std::vector<std::pair<int, int>>{{0, 2}}));
 }
 
 TEST(ArrangementSpacing, FindsALargeElementBehindSmallOnes) {
@@ -54,7 +59,8 @@ TEST(ArrangementSpacing, FindsALargeElementBehindSmallOnes) {
   const std::vector<Vector3d> x{{0, 0, 0}, {1, 0, 0}, {0, 3, 0}};
   const SpacingCheck check = check_spacing(x, std::vector<double>{0.5, 0.1, 3.5}, 1e-9);
   EXPECT_EQ(*check.smallest_ratio, 0.75);
-  EXPECT_EQ(check.too_close, 2);  // also sqrt(10) < 3.6
+  using Pairs = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(check.too_close, (Pairs{{0, 2}, {1, 2}}));  // also sqrt(10) < 3.6
 }
 
 TEST(ArrangementSpacing, IsThatOfAllPairs) {
@@ -64,16 +70,17 @@ TEST(ArrangementSpacing, IsThatOfAllPairs) {
     std::vector<double> extents;
     for (std::size_t i = 0; i < x.size(); ++i) extents.push_back(0.02 * random.uniform());
     double smallest = std::numeric_limits<double>::infinity();
-    int too_close = 0;
+    std::set<std::pair<int, int>> too_close;
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const double distance = (x[i] - x[j]).norm(), sum = extents[i] + extents[j];
         smallest = std::min(smallest, distance / sum);
-        if (distance < sum - 1e-9) ++too_close;
+        if (distance < sum - 1e-9) too_close.insert({static_cast<int>(j), static_cast<int>(i)});
       }
     const SpacingCheck check = check_spacing(x, extents, 1e-9);
     EXPECT_EQ(*check.smallest_ratio, smallest);
-    EXPECT_EQ(check.too_close, too_close);
+    EXPECT_EQ(std::set(check.too_close.begin(), check.too_close.end()), too_close);
+    EXPECT_EQ(check.too_close.size(), too_close.size());
   }
 }
 

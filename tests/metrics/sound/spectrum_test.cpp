@@ -82,6 +82,18 @@ TEST(SpectralCentroid, OfWhiteNoiseIsTheMiddleOfWhatIsHeard) {
   EXPECT_NEAR(*spectral_centroid(spectrum, 2000, 4000), 3000, 60);
 }
 
+/// `sound_centroid`: by power, not magnitude, of the whole sound, and only of what is heard.
+TEST(SpectralCentroid, OfAWholeSoundIsByPowerAndLeavesOutWhatLiesBelow20Hz) {
+  const auto centroid = [](const Eigen::VectorXd& sound) {
+    return *spectral_centroid(whole_spectrum(sound, kSoundRate, SoundWindow::none));
+  };
+  EXPECT_NEAR(centroid(tone(1000) + 2 * tone(4000)), 3400, 10);  // by magnitude: 3000
+  EXPECT_NEAR(centroid(tone(10) + tone(1000)), 1000, 15);        // with all of it: 505
+  Eigen::VectorXd click = Eigen::VectorXd::Zero(9000);
+  click(4000) = 0.5;
+  EXPECT_NEAR(centroid(click), 10010, 3);
+}
+
 TEST(SpectralCentroid, IsAbsentInSilence) {
   EXPECT_FALSE(spectral_centroid(welch_spectrum(Eigen::VectorXd::Zero(9000), kSoundRate)));
 }
