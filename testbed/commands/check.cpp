@@ -43,7 +43,9 @@ struct Verdict {
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
   bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
-  bool mutation_seen = false;  ///< by at least one claim
+  /// By at least one claim; or no claim of this size names a null, which is a notice.
+  bool mutation_seen = false;
+  bool names_nulls = false;
   bool same_bytes = false;     ///< as the blessed run: its values need no comparison
   /// Why the values were compared although nothing need have changed, and how the frames differ.
   std::vector<std::string> notices;
@@ -158,7 +160,11 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
   verdict.mutations = request.mutations;
+  verdict.names_nulls =
+      std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
+                  [](const ClaimSpec& claim) { return claim.null.has_value(); });
   verdict.mutation_seen =
+      !verdict.names_nulls ||
       std::any_of(verdict.claims.begin(), verdict.claims.end(), [](const ClaimRecord& claim) {
         return claim.holds && claim.null.verdict == Discrimination::discriminates;
       });
@@ -203,6 +209,9 @@ void say_verdict(const Verdict& verdict, bool quick) {
   }
   if (verdict.mutations && !verdict.mutation_seen) {
     say("        " + verdict.id + ": no claim notices that a method is replaced by its null");
+  }
+  if (verdict.mutations && !verdict.names_nulls) {
+    say("        notice: no claim of " + verdict.id + " of this size names a null");
   }
   for (const ClaimRecord& claim : unsound(verdict.claims)) {
     say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text + ": " +
