@@ -107,14 +107,13 @@ std::vector<MethodEntry> methods() {
 std::vector<DiagnosticEntry> diagnostics() {
   constexpr Tolerance kCounts{0, 0};
   DiagnosticTable table;
-  table.unmeasured(
-      "of the search: only what it keeps is recorded",
-      {{"depth", "1", "replacements one after the other, from an input"},
-       {"candidates", "1", "replacements that were looked at so far", true, kCounts},
-       {"closing", "1", "of these, those whose seams meet", true, kCounts},
-       {"valid", "1", "of these, distinct ones that keep all rules"},
-       {"duplicates", "1", "assemblies that were made before"},
-       {"states", "1", "assemblies whose replacements were looked at"}});
+  table.unmeasured("of the search: only what it keeps is recorded",
+                   {{"depth", "1", "replacements one after the other, from an input"},
+                    {"candidates", "1", "replacements that were looked at so far", true, kCounts},
+                    {"closing", "1", "of these, those whose seams meet", true, kCounts},
+                    {"valid", "1", "of these, distinct ones that keep all rules"},
+                    {"duplicates", "1", "assemblies that were made before"},
+                    {"states", "1", "assemblies whose replacements were looked at"}});
   table.unmeasured(
       "of assemblies that were thrown away: of those that were kept each rule has its metric",
       {{"broken_bill", "1", "assemblies of more parts than are to be had"},

@@ -59,8 +59,7 @@ std::vector<DiagnosticEntry> diagnostics() {
   DiagnosticTable table;
   // Recorded by every method.
   table.measured("count_ratio", {"details", "1", "details, visible or not"});
-  table.measured("visible_density_ratio",
-                 {"visible_details", "1", "details of weight above 1/2"});
+  table.measured("visible_density_ratio", {"visible_details", "1", "details of weight above 1/2"});
   table.measured("mean_edge_change", {"mean_edge", "m", "mean edge of M_d among details"});
   table.measured("inserted_total", {"inserted", "1", "details that came in the frame"});
   table.measured("removed_total", {"removed", "1", "details that left in the frame"});

@@ -82,8 +82,7 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"momentum_x", "kg m/s", "of the particles"},
        {"momentum_y", "kg m/s", "of the particles"},
        {"momentum_z", "kg m/s", "of the particles"}});
-  table.measured("volume",
-                 {"surface_volume", "m^3", "volume that the recorded surface encloses"});
+  table.measured("volume", {"surface_volume", "m^3", "volume that the recorded surface encloses"});
   table.measured("potential_energy",
                  {"potential_energy", "J", "of the particles above the origin"});
   // Recorded by an extraction.
@@ -107,8 +106,7 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"displaced_vertices", "1", "vertices of the result that a map moved"},
        {"added_volume", "m^3", "integral of the displacements along the normal"},
        {"min_jacobian", "1", "smallest det(I + grad d) of the maps: 0 or less where they fold"}});
-  table.measured("triangles",
-                 {"added_triangles", "1", "triangles more than the target has"});
+  table.measured("triangles", {"added_triangles", "1", "triangles more than the target has"});
   table.unmeasured("of the target, which is another run",
                    {{"target_vertices", "1", "vertices of the target's frame"}});
   return table.rows();

@@ -34,9 +34,9 @@ std::vector<DiagnosticEntry> diagnostics() {
   DiagnosticTable table;
   // Recorded by every method.
   table.measured("triangles", {"triangles", "1", "triangles of the mesh"});
-  table.measured("handle_work",
-                 {"handle_work", "J",
-                  "work done on the sheet by the prescribed handles since the start"});
+  table.measured(
+      "handle_work",
+      {"handle_work", "J", "work done on the sheet by the prescribed handles since the start"});
   table.unmeasured(
       "work of the solver, which leaves no trace in the sheet",
       {{"vertices", "1", "vertices of the mesh, unknowns of the solver"},

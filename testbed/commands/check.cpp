@@ -42,11 +42,11 @@ struct Verdict {
   std::vector<std::string> failures;  ///< of variants that an error ended, and of outcomes
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
-  bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
+  bool mutations = false;  ///< asked for: a method replaced by its null must be noticed
   /// By at least one claim; or no claim of this size names a null, which is a notice.
   bool mutation_seen = false;
   bool names_nulls = false;
-  bool same_bytes = false;     ///< as the blessed run: its values need no comparison
+  bool same_bytes = false;  ///< as the blessed run: its values need no comparison
   /// Why the values were compared although nothing need have changed, and how the frames differ.
   std::vector<std::string> notices;
 
@@ -160,9 +160,8 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
   verdict.mutations = request.mutations;
-  verdict.names_nulls =
-      std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
-                  [](const ClaimSpec& claim) { return claim.null.has_value(); });
+  verdict.names_nulls = std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
+                                    [](const ClaimSpec& claim) { return claim.null.has_value(); });
   verdict.mutation_seen =
       !verdict.names_nulls ||
       std::any_of(verdict.claims.begin(), verdict.claims.end(), [](const ClaimRecord& claim) {

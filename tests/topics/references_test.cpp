@@ -46,8 +46,8 @@ const std::set<std::string> kLongRuns{
     // Features of a whole animation are cut out for each variant; the ocean alone stands beside.
     "fluid/boats-on-ocean",
     // What does nothing stands beside the method and what it is compared with.
-    "paper/a4-pinch", "paper/shake", "paper/square-compress", "paper/star", "paper/tear-three",
-    "paper/tear-zigzag", "sketch/developability", "sketch/scaling", "sketch/slow-road",
+    "paper/square-compress", "paper/tear-apex", "paper/tear-three", "paper/tear-zigzag",
+    "sketch/developability", "sketch/scaling", "sketch/slow-road",
     // Six to eight variants in five poses, on skin whose volume is measured.
     "skinning/ablations", "skinning/elbow", "skinning/finger", "skinning/weights"};
 

@@ -78,8 +78,9 @@ void describe(OptionVisitor& v, ClaimTable& t) {
           {.doc = "difference that == allows, in the metric's unit", .min = 0});
   v.value("known_shortfall", t.known_shortfall,
           {.doc = "why the claim falls short, where that is known: check lets it pass"});
-  v.value("slack", t.slack,
-          {.doc = "why the limit is more than five times off in every case: bless refuses it else"});
+  v.value(
+      "slack", t.slack,
+      {.doc = "why the limit is more than five times off in every case: bless refuses it else"});
   describe_choice(
       v, "reduce", t.reduce, kReductions,
       {.doc = "one number of all frames, without `at`; every: the claim must hold frame by frame"});

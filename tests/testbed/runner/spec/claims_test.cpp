@@ -64,9 +64,8 @@ TEST_F(SpecClaims, SentencesOverSeedsSayHowMany) {
       "metric = \"radius_error\"\nvariant = \"polygon\"\nvalue = 1\nover = \"seed\"\n";
   EXPECT_THAT(error_of(toy::disc_experiment() + "[[claim]]\ntext = \"round\"\n" + claim),
               HasSubstr("9 of 10 seeds"));
-  EXPECT_EQ(
-      error_of(toy::disc_experiment() + "[[claim]]\ntext = \"round in 9 of 10\"\n" + claim),
-      "no error");
+  EXPECT_EQ(error_of(toy::disc_experiment() + "[[claim]]\ntext = \"round in 9 of 10\"\n" + claim),
+            "no error");
 }
 
 /// With a diagnostic that a metric measures, as the topic's table says.
