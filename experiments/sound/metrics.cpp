@@ -84,8 +84,7 @@ MetricGroup sound_group() {
            [](M m) { return m.peak; })
       .row("sound_centroid", "Hz",
            "sum of f P(f) over sum of P(f) from 20 Hz to 20 kHz, P the squared spectrum of the "
-           "whole "
-           "mixed sound, mono, without a window",
+           "whole mixed sound, mono, without a window",
            kNone, {1, 1e-3}, [](M m) { return m.centroid; });
   for (const char* kind : {"flap", "crac", "friction", "tear"}) {
     const std::string name = kind;

@@ -24,9 +24,8 @@ inline constexpr double kSharpTurn = 0.3490658503988659;
 /// triangle without area, do not count.
 ///
 /// @param sharp     threshold of |theta| (rad), exclusive
-/// @param left_out  a value a vertex, or empty: edges between two such vertices do not count (what
-/// a
-///                  drawing asks to be an edge)
+/// @param left_out  a value a vertex, or empty: edges between two such vertices do not count (those
+///                  that a drawing asks for)
 /// @throws Error    on a threshold that is not positive, or a mask of another length
 /// Source: ours; turning as in Cohen-Steiner and Morvan, Restricted Delaunay Triangulations and
 /// Normal Cycle, 2003.

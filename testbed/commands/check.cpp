@@ -217,7 +217,7 @@ void say_verdict(const Verdict& verdict, bool quick) {
         null_text(claim));
   }
   for (const ClaimRecord& claim : verdict.claims) {
-    if (claim.holds && !claim.excepted.empty()) {
+    if (outcome_of(claim) == ClaimOutcome::holds && !claim.excepted.empty()) {
       say("        notice: " + verdict.id + ", case '" + claim.case_name +
           "' is excepted, and the claim holds there: " + claim.text);
     }
