@@ -28,11 +28,13 @@ std::vector<MethodEntry> methods() {
   };
 }
 
-std::vector<DiagnosticEntry> diagnostics() {
-  // Counts are exact on one machine; another compiler's round-off moves some of them.
-  constexpr Tolerance kWork{0.1, 0.05};
-  DiagnosticTable table;
-  // Recorded by every method.
+namespace {
+
+// Counts are exact on one machine; another compiler's round-off moves some of them.
+constexpr Tolerance kWork{0.1, 0.05};
+
+/// Recorded by every method, or by those whose mesh changes.
+void add_solver(DiagnosticTable& table) {
   table.measured("triangles", {"triangles", "1", "triangles of the mesh"});
   table.measured(
       "handle_work",
@@ -48,7 +50,10 @@ std::vector<DiagnosticEntry> diagnostics() {
        // Recorded by those whose mesh changes.
        {"settle_steps", "1", "steps from rest that the sheet settled for after the change", true,
         kWork}});
-  // Recorded where the paper tears.
+}
+
+/// Recorded where the paper tears.
+void add_tears(DiagnosticTable& table) {
   table.measured("tear_length", {"tear_length", "m", "length of all tears"});
   table.measured("fracture_energy", {"tear_energy", "J",
                                      "energy that tearing took since the start: the integral of "
@@ -64,13 +69,15 @@ std::vector<DiagnosticEntry> diagnostics() {
         "tears ended since the start for want of a mesh, or of least_part to cut off", true, kWork},
        {"tear_candidates", "1", "places tested since the start", true, kWork},
        {"tear_angle", "deg", "angle of the two images of the pull in the pattern"}});
-  // Recorded by the adaptive mesh.
+}
+
+/// Recorded by the adaptive mesh and by the hybrid.
+void add_structure(DiagnosticTable& table) {
   table.unmeasured("work of the remeshing: a mesh does not say how it was made",
                    {{"splits", "1", "edges split by the frame's remeshing"},
                     {"collapses", "1", "edges collapsed by it"},
                     {"flips", "1", "edges flipped by it"},
                     {"pop_filter_steps", "1", "steps that take back the pop of the remeshing"}});
-  // Recorded by the hybrid.
   table.measured("dcone_count", {"singular_points", "1", "singular points", true, kWork});
   table.measured("dcone_count",
                  {"new_singular_points", "1", "singular points inserted in the frame"});
@@ -94,6 +101,15 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"meshes_made", "1", "meshes made in the frame, those of changes taken back too", true,
         kWork},
        {"projection_iterations", "1", "iterations of the projection to isometry", true, kWork}});
+}
+
+}  // namespace
+
+std::vector<DiagnosticEntry> diagnostics() {
+  DiagnosticTable table;
+  add_solver(table);
+  add_tears(table);
+  add_structure(table);
   return table.rows();
 }
 
