@@ -43,7 +43,8 @@ struct Verdict {
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
   bool mutations = false;  ///< asked for: a method replaced by its null must be noticed
-  /// By at least one claim; or no claim of this size names a null, which is a notice.
+  /// By at least one claim; or none of this size names a null, but where it is known to fall short,
+  /// which is a notice.
   bool mutation_seen = false;
   bool names_nulls = false;
   bool same_bytes = false;  ///< as the blessed run: its values need no comparison
@@ -160,8 +161,9 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   verdict.run = run.folder.string();
   verdict.claims = decide_claims(run.experiment, run.record);
   verdict.mutations = request.mutations;
-  verdict.names_nulls = std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
-                                    [](const ClaimSpec& claim) { return claim.null.has_value(); });
+  verdict.names_nulls =
+      std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
+                  [](const ClaimSpec& claim) { return claim.null && !claim.known_shortfall; });
   verdict.mutation_seen =
       !verdict.names_nulls ||
       std::any_of(verdict.claims.begin(), verdict.claims.end(), [](const ClaimRecord& claim) {
