@@ -11,6 +11,8 @@ import unicodedata
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from prose import FENCED, blank
+
 BIBLIOGRAPHY = "docs/references.bib"
 ROOMS = ("core", "metrics", "models", "baselines", "solvers", "testbed", "experiments", "examples", "tests",
          "benchmarks")
@@ -37,7 +39,6 @@ LISTED = re.compile(r"^- (?P<authors>[A-Z]\.[^*\n]+)\. \*(?P<title>[^*\n]+?)\.?\
 COMMENT = re.compile(r"(?P<code>.*?)//(?:/<?)?(?![/<])\s*(?P<text>.*)")
 SOURCE = re.compile(r"\bSources?\b[^:;.]{0,40}:")
 STRING = re.compile(r'"((?:[^"\\\n]|\\.)+)"')
-FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 
 
 def plain(text):
@@ -177,7 +178,7 @@ def page_citations(name, text):
     """Of a page: those of its lists of works (`- A. Surname. *Title.* …, 2013.`), and those of the rest."""
     out = [listed_citation(f"{name}:{text.count(chr(10), 0, m.start()) + 1}", m) for m in LISTED.finditer(text)]
     for pattern in (FENCED, LISTED):
-        text = pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+        text = blank(text, pattern)
     return out + citations_in(name, 1, text)
 
 

@@ -8,7 +8,8 @@ such as A4. Any other is bare: nothing notices when it is no longer true.
 import re
 
 import citations
-from pages import BLOCK, INLINE, PLACEHOLDER, line_of, without_code
+from pages import BLOCK, INLINE, PLACEHOLDER, line_of
+from prose import blank, without_code
 
 SECTION = re.compile(r"^(?P<level>#+) (?:What was found|Results)\b[^\n]*$", re.MULTILINE)
 HEADING = re.compile(r"^(?P<level>#+) ", re.MULTILINE)
@@ -18,13 +19,10 @@ NAMED = r"\b[A-Za-z_][\w^]*\d\w*"  # A4, L2, x0: names that have a digit
 NO_NUMBERS = [re.compile(pattern, flags) for pattern, flags in (
     (r"<!--.*?-->", re.DOTALL), (r"`[^`\n]*`", 0), (r"\]\([^)\n]*\)", 0), (r"https?://\S+", 0), (REFERENCE, 0),
     (NAMED, 0))]
+TEMPLATE = re.compile(r"^ *<!-- begin: table\n[^\n]*\n(?P<rows>.*?)-->", re.DOTALL | re.MULTILINE)  # below its head
+FIRST_CELL = re.compile(r"^\|[^|\n]*", re.MULTILINE)
 NUMBER = re.compile(r"\d+(?:[.,]\d+)*")
 QUICK = re.compile(r"--quick|\bquick runs?\b")
-
-
-def blank(text, pattern):
-    """The text with what matches blank, every other character where it was."""
-    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
 
 
 def sections(text):
@@ -40,26 +38,19 @@ def lines_of(page, text, pattern, prose):
             for m in pattern.finditer(prose, start, end)]
 
 
-def without_tables(text):
-    """The page with its generated blocks blank, but for what rows of a table's template say beside expressions:
-    behind the first cell that is no name."""
-    def shown(match):
-        if not match["source"].startswith("table\n"):
-            return re.sub(r"[^\n]", " ", match[0])
-        start = match.start("source") - match.start()
-        lines = PLACEHOLDER.sub(lambda m: " " * len(m[0]), match["source"]).split("\n")
-        for i, line in enumerate(lines):
-            bar = line.find("|", 1) if i > 1 else len(line)
-            lines[i] = " " * bar + line[bar:]
-        rest = re.sub(r"[^\n]", " ", match[0])
-        kept = "\n".join(lines)
-        return rest[:start] + kept + rest[start + len(kept):]
-    return BLOCK.sub(shown, text)
+def with_templates(text):
+    """The page with its generated blocks blank, but for what rows of a table's template say beside expressions: behind
+    their first cell, which is a name."""
+    prose = blank(text, BLOCK)
+    for table in TEMPLATE.finditer(text):
+        rows = blank(blank(table["rows"], PLACEHOLDER), FIRST_CELL)
+        prose = prose[:table.start("rows")] + rows + prose[table.end("rows"):]
+    return prose
 
 
 def bare_numbers(page, text):
     """`page:line: number` of each."""
-    prose = without_tables(without_code(text))
+    prose = with_templates(without_code(text))
     for pattern in (INLINE, *NO_NUMBERS, citations.IN_TEXT):
         prose = blank(prose, pattern)
     return lines_of(page, text, NUMBER, prose)

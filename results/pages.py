@@ -17,6 +17,7 @@ from pathlib import Path
 import expressions
 import settings
 from expressions import ExpressionError
+from prose import without_code
 from runfile import RunFileError
 from records import Record, read_records
 from summary import claim_list, table, timing_table
@@ -25,7 +26,6 @@ from wording import all_told, outcome_words
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
                    re.DOTALL | re.MULTILINE)
-FENCED = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 MOST_HEADLINES = 4  # claims of an experiment below its figure; those that fall short are shown all
 
@@ -53,6 +53,9 @@ class Marker:
     shown: str
     block: bool
     pad: str = ""
+
+    def of_record(self):
+        return self.block or not self.source.startswith(settings.KINDS)
 
     def name(self):
         return f"block '{self.source.splitlines()[0]}'" if self.block else f"number '{self.source}'"
@@ -182,11 +185,6 @@ def line_of(text, position):
     return text.count("\n", 0, position) + 1
 
 
-def without_code(text):
-    """The page with its fenced code blank, every other character where it was."""
-    return FENCED.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
-
-
 def matches(text):
     """The blocks of a page and the numbers between them, in their order."""
     blocks = list(BLOCK.finditer(text))
@@ -218,12 +216,12 @@ def markers_of(page, text):
 
 def number_of(marker, sources):
     """Of a record, of an experiment file, or, quoted, what stands there."""
-    if marker.source.startswith("key "):
-        return settings.setting(marker.source, sources.root)
-    if marker.source.startswith("from "):
+    if marker.of_record():
+        return expressions.evaluate(marker.source, sources.records)
+    if marker.source.startswith(settings.QUOTED):
         settings.require_source(marker.source, sources.root)
         return marker.shown
-    return expressions.evaluate(marker.source, sources.records)
+    return settings.setting(marker.source, sources.root)
 
 
 def content_of(page, marker, sources):
@@ -268,7 +266,7 @@ def quoted(page, text):
     for marker in markers_of(page, text):
         try:
             for source in PLACEHOLDER.findall(marker.source) if marker.block else [marker.source]:
-                if marker.block or not marker.source.startswith(("key ", "from ")):
+                if marker.of_record():
                     out += expressions.quoted(source)
         except ExpressionError as error:
             raise PageError(f"{page}:{marker.line}: {marker.name()}: {error}") from error

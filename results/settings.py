@@ -14,6 +14,8 @@ import citations
 from expressions import SCALES, ExpressionError
 from wording import number
 
+QUOTED = "from "
+KINDS = ("key ", QUOTED)
 THESIS = re.compile(r"thesis \d+(\.\d+)*")
 
 
@@ -55,7 +57,7 @@ def setting(source, root):
 
 def require_source(source, root):
     """That of `from SOURCE` is a place in the thesis, or of the bibliography. Raises ExpressionError."""
-    name = source.removeprefix("from ")
+    name = source.removeprefix(QUOTED)
     if THESIS.fullmatch(name):
         return
     entries, _ = citations.read_entries((Path(root) / citations.BIBLIOGRAPHY).read_text(encoding="utf-8"))

@@ -71,6 +71,12 @@ std::vector<const Tally*> tallies_of(const ConstraintMeasures& m) {
           &m.machine.links};
 }
 
+FidelityMeasures fidelity_of(const Deviation& deviation) {
+  FidelityMeasures out{deviation.of_state, deviation.of_nothing, {}};
+  if (out.of_nothing > 0) out.ratio = out.deviation / out.of_nothing;
+  return out;
+}
+
 void raise(Value& largest, double value) { largest = std::max(largest.value_or(value), value); }
 
 /// Numbers that are in both, each ascending.
@@ -114,9 +120,7 @@ std::optional<FidelityMeasures> fidelity_measures(const GrammarScene& scene, con
   const auto deviation =
       deviation_of(state, rest_beside(scene, state), asked_at(scene, step_number(frame.parameter)));
   if (!deviation) return std::nullopt;
-  FidelityMeasures out{deviation->of_state, deviation->of_nothing, {}};
-  if (out.of_nothing > 0) out.ratio = out.deviation / out.of_nothing;
-  return out;
+  return fidelity_of(*deviation);
 }
 
 std::optional<ChangeMeasures> change_measures(const GrammarScene& scene, const Frame& frame) {
@@ -220,23 +224,26 @@ std::optional<SuiteMeasures> suite_measures(const GrammarScene& scene,
     if (!is_deformation(step)) continue;
     const auto frame = frames.frame(i);
     out.gestures += 1;
-    if (const auto constraints = constraint_measures(scene, *frame)) {
-      const int broken = constraints->broken();
+    const RecordedState state(*frame, scene.rest.types());
+    const RecordedState rest = rest_beside(scene, state);
+    const AskedPlaces asked = asked_at(scene, step_number(frame->parameter));
+    if (records_all(scene)) {
+      const ConstraintMeasures constraints = constraints_of(scene, state, rest);
+      const int broken = constraints.broken();
       raise(out.worst_violations, broken);
       out.broken_gestures = out.broken_gestures.value_or(0) + (broken > 0 ? 1 : 0);
-      const RecordedState state(*frame, scene.rest.types());
-      if (const auto unserved = unserved_deviation_of(
-              state, rest_beside(scene, state), asked_at(scene, step_number(frame->parameter)),
-              constraints->broken_elements())) {
+      if (const auto unserved =
+              unserved_deviation_of(state, rest, asked, constraints.broken_elements())) {
         unserved_sum += unserved->of_state;
         asked_sum += unserved->of_nothing;
       }
     }
-    const auto fidelity = fidelity_measures(scene, *frame);
-    if (!fidelity) continue;
-    deviation += fidelity->deviation;
-    of_nothing += fidelity->of_nothing;
-    if (fidelity->ratio) raise(out.worst_deviation_ratio, *fidelity->ratio);
+    const auto served = deviation_of(state, rest, asked);
+    if (!served) continue;
+    const FidelityMeasures fidelity = fidelity_of(*served);
+    deviation += fidelity.deviation;
+    of_nothing += fidelity.of_nothing;
+    if (fidelity.ratio) raise(out.worst_deviation_ratio, *fidelity.ratio);
   }
   if (out.gestures == 0) return std::nullopt;
   if (of_nothing > 0) out.mean_deviation_ratio = deviation / of_nothing;

@@ -2,13 +2,14 @@
 
 #include <vector>
 
+#include "core/angles.h"
 #include "core/mesh.h"
 
 namespace geoprior {
 
 /// Angle between the normals of two triangles above which their edge counts as sharp (rad): 20
 /// degrees, the turn of a cylinder of eighteen sides.
-inline constexpr double kSharpTurn = 0.3490658503988659;
+inline constexpr double kSharpTurn = 20 * kDegree;
 
 /// Share of a surface's turning that lies in sharp edges,
 ///   sum over sharp edges of l_e |theta_e| / sum over all interior edges of l_e |theta_e|,

@@ -42,17 +42,15 @@ struct Verdict {
   std::vector<std::string> failures;  ///< of variants that an error ended, and of outcomes
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
-  bool mutations = false;  ///< asked for: a method replaced by its null must be noticed
-  /// By at least one claim; or none of this size names a null, but where it is known to fall short,
-  /// which is a notice.
-  bool mutation_seen = false;
-  bool names_nulls = false;
-  bool same_bytes = false;  ///< as the blessed run: its values need no comparison
+  bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
+  bool mutation_seen = false;  ///< by at least one claim
+  bool names_nulls = false;    ///< a claim of this size that is not known to fall short does
+  bool same_bytes = false;     ///< as the blessed run: its values need no comparison
   /// Why the values were compared although nothing need have changed, and how the frames differ.
   std::vector<std::string> notices;
 
   [[nodiscard]] bool passed() const {
-    return has_reference && failures.empty() && (mutation_seen || !mutations) &&
+    return has_reference && failures.empty() && (mutation_seen || !mutations || !names_nulls) &&
            std::none_of(mismatches.begin(), mismatches.end(),
                         [](const Mismatch& mismatch) { return mismatch.fails; }) &&
            unsound(claims).empty() && std::all_of(claims.begin(), claims.end(), [&](const auto& c) {
@@ -165,7 +163,6 @@ Verdict check_one(const CommandContext& context, const std::string& id,
       std::any_of(run.experiment.claims.begin(), run.experiment.claims.end(),
                   [](const ClaimSpec& claim) { return claim.null && !claim.known_shortfall; });
   verdict.mutation_seen =
-      !verdict.names_nulls ||
       std::any_of(verdict.claims.begin(), verdict.claims.end(), [](const ClaimRecord& claim) {
         return claim.holds && claim.null.verdict == Discrimination::discriminates;
       });
@@ -208,11 +205,10 @@ void say_verdict(const Verdict& verdict, bool quick) {
     say(std::string("        ") + (mismatch.fails ? "" : "notice: ") +
         mismatch_text(verdict.id, mismatch));
   }
-  if (verdict.mutations && !verdict.mutation_seen) {
-    say("        " + verdict.id + ": no claim notices that a method is replaced by its null");
-  }
   if (verdict.mutations && !verdict.names_nulls) {
     say("        notice: no claim of " + verdict.id + " of this size names a null");
+  } else if (verdict.mutations && !verdict.mutation_seen) {
+    say("        " + verdict.id + ": no claim notices that a method is replaced by its null");
   }
   for (const ClaimRecord& claim : unsound(verdict.claims)) {
     say("        " + verdict.id + ", case '" + claim.case_name + "', claim: " + claim.text + ": " +

@@ -16,29 +16,43 @@ double mean_square_distance(std::span<const Vector3d> a, std::span<const Vector3
   return sum / static_cast<double>(a.size());
 }
 
+/// Squares of distances, summed over elements.
+class SquareSums {
+ public:
+  void add(double of_state, double of_nothing) {
+    of_state_ += of_state;
+    of_nothing_ += of_nothing;
+    ++count_;
+  }
+  /// Root mean squares; absent without elements.
+  [[nodiscard]] std::optional<Deviation> deviation() const {
+    if (count_ == 0) return std::nullopt;
+    return Deviation{std::sqrt(of_state_ / count_), std::sqrt(of_nothing_ / count_)};
+  }
+
+ private:
+  double of_state_ = 0, of_nothing_ = 0;
+  int count_ = 0;
+};
+
 }  // namespace
 
 std::optional<Deviation> deviation_of(const RecordedState& state, const RecordedState& rest,
                                       const AskedPlaces& asked) {
-  Deviation out;
-  int count = 0;
+  SquareSums sums;
   for (const RecordedElement& before : rest.elements()) {
     const RecordedElement* now = state.find_same(before);
     if (now == nullptr || before.keys.empty()) continue;
     const std::vector<Vector3d> wanted = asked.keys(before.number);
-    out.of_state += mean_square_distance(now->keys, wanted);
-    out.of_nothing += mean_square_distance(before.keys, wanted);
-    ++count;
+    sums.add(mean_square_distance(now->keys, wanted), mean_square_distance(before.keys, wanted));
   }
-  if (count == 0) return std::nullopt;
-  return Deviation{std::sqrt(out.of_state / count), std::sqrt(out.of_nothing / count)};
+  return sums.deviation();
 }
 
 std::optional<Deviation> unserved_deviation_of(const RecordedState& state,
                                                const RecordedState& rest, const AskedPlaces& asked,
                                                const std::set<int>& broken) {
-  Deviation out;
-  int count = 0;
+  SquareSums sums;
   for (const RecordedElement& before : rest.elements()) {
     if (before.keys.empty()) continue;
     const std::vector<Vector3d> wanted = asked.keys(before.number);
@@ -46,12 +60,9 @@ std::optional<Deviation> unserved_deviation_of(const RecordedState& state,
     const RecordedElement* now = state.find_same(before);
     double own = now != nullptr ? mean_square_distance(now->keys, wanted) : at_rest;
     if (broken.contains(before.number)) own = std::max(own, at_rest);
-    out.of_state += own;
-    out.of_nothing += at_rest;
-    ++count;
+    sums.add(own, at_rest);
   }
-  if (count == 0) return std::nullopt;
-  return Deviation{std::sqrt(out.of_state / count), std::sqrt(out.of_nothing / count)};
+  return sums.deviation();
 }
 
 Difference difference_of(const RecordedState& state, const RecordedState& other) {
