@@ -2,16 +2,22 @@
 its experiment's record. A picture belongs to the experiment whose caption (`figure ID`, docs/file-formats.md) is the
 next block below it; a caption that names several files has as many pictures above it, in their order."""
 
+import io
 import re
 import struct
 import zlib
 from pathlib import Path
 
+from PIL import Image
+
 import pages
+from prose import without_code
 from runfile import RunFileError, require_regular_file, write_atomically
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 KEYWORD = b"geoprior content_sha256"
+MOST_BYTES = 1 << 20  # of a picture as it was drawn; a larger one is reduced to the width that pages show
+PAGE_WIDTH = 1200
 SHOWN = re.compile(r"!\[[^]]*\]\(([^)]+\.png)\)")
 
 
@@ -57,7 +63,7 @@ def owners(texts, root):
     """path of a picture: (experiment, file of the run that it is) by the captions of all pages."""
     found = {}
     for page, text in texts.items():
-        shown = [(m.start(), m[1]) for m in SHOWN.finditer(pages.without_code(text))]
+        shown = [(m.start(), m[1]) for m in SHOWN.finditer(without_code(text))]
         above = 0  # where the block before ends
         for marker in (m for m in pages.markers_of(page, text) if m.block):
             targets = [target for at, target in shown if above <= at < marker.start]
@@ -69,6 +75,17 @@ def owners(texts, root):
             for target, file in zip(targets[::-1], (files or ["figure.png"])[::-1]):
                 found[(root / page).parent.joinpath(target).resolve()] = (experiment, file)
     return found
+
+
+def reduced(content):
+    """The picture as it was drawn, or narrower where it is too large for a repository."""
+    if len(content) <= MOST_BYTES:
+        return content
+    image = Image.open(io.BytesIO(content)).convert("RGB")
+    height = round(image.height * PAGE_WIDTH / image.width)
+    out = io.BytesIO()
+    image.resize((PAGE_WIDTH, height), Image.Resampling.LANCZOS).save(out, "PNG", optimize=True)
+    return out.getvalue()
 
 
 def read_picture(path):
@@ -85,7 +102,7 @@ def publish(run, texts, root):
     for path, (experiment, file) in owners(texts, Path(root).resolve()).items():
         if experiment == run.experiment_id:
             drawn = run.folder / file
-            write_atomically(path, stamped(read_picture(drawn), drawn, run.content_sha256))
+            write_atomically(path, stamped(reduced(read_picture(drawn)), drawn, run.content_sha256))
             written.append(path)
     return written
 

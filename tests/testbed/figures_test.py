@@ -14,6 +14,9 @@ import unittest
 import zlib
 from pathlib import Path
 
+import numpy as np
+from PIL import Image
+
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
@@ -315,6 +318,15 @@ class Pictures(Scratch):
         found = {path.name: owner for path, owner in pictures.owners({"page.md": text}, self.root).items()}
         self.assertEqual(found, {"b.png": ("test/knee", "one.png"), "c.png": ("test/knee", "two.png"),
                                  "d.png": ("test/elbow", "figure.png")})
+
+    def test_of_more_than_a_mebibyte_are_reduced_to_the_width_of_a_page(self):
+        noise = np.random.default_rng(1).integers(0, 256, (600, 2800, 3), np.uint8)
+        Image.fromarray(noise).save(self.run / "figure.png")
+        self.publish()
+        data = json.loads(self.record.read_text(encoding="utf-8"))
+        content = self.picture.read_bytes()
+        self.assertEqual(Image.open(self.picture).size, (1200, 257))
+        self.assertEqual(pictures.stamp_of(content, "knee.png"), data["content_sha256"])
 
     def test_of_another_run_or_of_none_are_named(self):
         self.picture.write_bytes(pictures.stamped(self.ONE_PIXEL, "knee.png", "f" * 64))
