@@ -65,13 +65,14 @@ def picture(run):
     return f"<h2>Picture</h2>\n{image}" if image else ""
 
 
-def spectrogram_figure(run):
-    """The picture that the run has, with its frames; else one without them."""
+def spectrogram_figures(run):
+    """The pictures that the run has, with its frames; else one without them."""
     caption = ("Events and levels of the sound over time, one range of colours; spectra of 43 ms "
                "below 500 Hz, of 11 ms above 1 kHz.")
-    there = png_figure(run.folder / "spectrogram.png", "Spectrograms below frames", caption)
-    if there:
-        return there
+    there = [png_figure(path, "Spectrograms below frames", caption)
+             for path in [run.folder / "spectrogram.png", *sorted(run.folder.glob("spectrogram-*.png"))]]
+    if there[0]:
+        return "\n".join(there)
     try:
         drawn = spectrogram.picture(run)
     except sound.NoSound as error:
@@ -106,7 +107,7 @@ def sounds(run):
     players = [sound_player(run, *one) for one in found[:MOST_SOUNDS]]
     more = len(found) - MOST_SOUNDS
     note = f'<p class="note">{more} more sounds are in the run\'s folder.</p>' if more > 0 else ""
-    return "\n".join(["<h2>Sound</h2>", spectrogram_figure(run), *players, note])
+    return "\n".join(["<h2>Sound</h2>", spectrogram_figures(run), *players, note])
 
 
 def not_drawn(run):

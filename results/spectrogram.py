@@ -192,7 +192,7 @@ class TimeAxis:
     def __init__(self, case, blocks, times):
         ends = [b.sound.seconds() for b in blocks]
         if case.parameter_unit == "s":
-            ends += [x for b in blocks for x in b.variant.parameter[[0, -1]] if b.variant.parameter.size]
+            ends += [x for b in blocks if b.variant.parameter.size for x in b.variant.parameter[[0, -1]]]
         self.first, self.last = min([0.0, *ends]), max(ends)
         inches = WIDTH - LEFT - RIGHT
         slot = min([*np.diff(times), (self.last - self.first) / 6])

@@ -27,7 +27,7 @@ class MetricRowError : public Error {
 
 /// Builds a MetricGroup: rows, each beside how its value is read off the group's `Measures`.
 ///
-/// frame_metrics, reference_metrics and sequence_metrics below begin one:
+/// frame_metrics, reference_metrics, sequence_metrics and event_metrics below begin one:
 /// ```
 /// MetricGroup group = frame_metrics<MyScene>(measure_surface)
 ///     .row("area", "m^2", "area of the surface", Direction::none, kSmooth,
@@ -97,6 +97,18 @@ class MetricRows {
     group_.of_sequence = [readers = readers_, measure = std::move(measure)](
                              const Scene& scene, const FrameSequence& frames) {
       return values(*readers, measure(scene, frames));
+    };
+  }
+  /// The same of `measure(const std::vector<Event>&)`, of one variant or of several together.
+  template <class Measure>
+  void measured_of_events(Measure measure) {
+    group_.of_events = [readers = readers_,
+                        measure = std::move(measure)](const std::vector<Event>& events) {
+      return values(*readers, measure(events));
+    };
+    group_.of_sequence = [of_events = group_.of_events](const Scene& /*scene*/,
+                                                        const FrameSequence& frames) {
+      return of_events(frames.events());
     };
   }
   /// Of a reference frame `parts` are looked at; empty: all.
@@ -183,6 +195,14 @@ auto sequence_metrics(Measure measure) {
       [measure = std::move(measure)](const Scene& scene, const FrameSequence& frames) {
         return measure(dynamic_cast<const TypedScene&>(scene), frames);
       });
+  return rows;
+}
+
+/// Metrics of events alone: `measure(const std::vector<Event>&)`.
+template <class Measure>
+auto event_metrics(Measure measure) {
+  MetricRows<metric_rows_detail::MeasuresOf<Measure, const std::vector<Event>&>> rows;
+  rows.measured_of_events(std::move(measure));
   return rows;
 }
 

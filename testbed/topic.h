@@ -162,6 +162,9 @@ struct MetricGroup {
   /// One value a row and variant, from all of its frames in order of parameter. They may have to be
   /// read from the disk: go through them once (FrameSequence).
   std::function<MetricValues(const Scene&, const FrameSequence&)> of_sequence = {};
+  /// Beside `of_sequence`, where the rows look at nothing but events: those of several cases may be
+  /// measured together, in time one case after another (a study of the kind "pooled").
+  std::function<MetricValues(const std::vector<Event>&)> of_events = {};
 };
 
 /// One row of a topic's table of diagnostics: what only a method can know of a frame (iterations,

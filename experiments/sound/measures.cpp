@@ -151,21 +151,18 @@ std::optional<VoiceDistance> voice_distance(const FrameSequence& frames) {
   return out;
 }
 
-std::optional<EnergyExponent> energy_exponent(const FrameSequence& frames) {
+EnergyExponent energy_exponent(const std::vector<Event>& events) {
   std::vector<Event> snaps;
-  for (const Event& event : frames.events()) {
+  for (const Event& event : events) {
     if (event.kind == "flap" || event.kind == "crac") snaps.push_back(event);
   }
-  std::stable_sort(snaps.begin(), snaps.end(),
-                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
   const PowerLawFit fit = event_energy_exponent(snaps, "");
   EnergyExponent out;
   out.stated = fit.stated_exponent();
   out.count = fit.count;
   if (fit.count == 0) return out;
   out.fitted = fit.exponent;
-  out.standard_error = fit.standard_error;
-  out.decades = fit.decades;
+  out.p_value = fit.p_value;
   return out;
 }
 

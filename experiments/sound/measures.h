@@ -53,10 +53,9 @@ std::optional<VoiceDistance> voice_distance(const FrameSequence& frames);
 struct EnergyExponent {
   std::optional<double> stated;  ///< absent: withheld
   std::optional<double> fitted;  ///< whether it may be stated or not
-  double standard_error = 0;
-  double count = 0;  ///< energies in the tail
-  double decades = 0;
+  std::optional<double> p_value;  ///< of the fit
+  double count = 0;               ///< energies in the tail
 };
-std::optional<EnergyExponent> energy_exponent(const FrameSequence& frames);
+EnergyExponent energy_exponent(const std::vector<Event>& events);
 
 }  // namespace geoprior::sound

@@ -43,10 +43,8 @@ Pictures make_pictures(const fs::path& run_folder, const FigureView& view) {
     render_run(OpenedRun(run_folder), view);
     pictures.figure = run_folder / "figure.png";
   });
-  attempt(pictures.error, [&] {
-    if (!draw_spectrogram(OpenedRun(run_folder), view)) return;
-    pictures.spectrogram = run_folder / "spectrogram.png";
-  });
+  attempt(pictures.error,
+          [&] { pictures.spectrograms = draw_spectrograms(OpenedRun(run_folder), view); });
   attempt(pictures.error, [&] { run_python("plots", {run_folder.string()}); });
   attempt(pictures.error, [&] {
     run_python("summary", {run_folder.string()});

@@ -12,13 +12,13 @@ namespace geoprior {
 
 struct Pictures {
   std::optional<std::filesystem::path> figure;
-  std::optional<std::filesystem::path> spectrogram;  ///< of a run with sound
+  std::vector<std::filesystem::path> spectrograms;  ///< of a run with sound, one a drawn case
   std::optional<std::filesystem::path> summary;
   std::optional<std::filesystem::path> report;
   std::string error;  ///< what kept the rest from being made; the run itself is complete
 };
 
-/// figure.png, spectrogram.png of a run with sound, metrics.svg, summary.md and report.html in the
+/// figure.png, spectrograms of a run with sound, metrics.svg, summary.md and report.html in the
 /// folder of a run.
 Pictures make_pictures(const std::filesystem::path& run_folder, const FigureView& view);
 

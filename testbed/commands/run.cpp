@@ -72,7 +72,7 @@ void say_outcome(const ExecuteResult& result, const Pictures& pictures, bool tab
   say(all_claims_hold(record) ? claims : tinted(claims, Tint::bad));
   say("numbers  " + pictures.summary.value_or(result.folder / "run.h5").string());
   if (pictures.figure) say("picture  " + pictures.figure->string());
-  if (pictures.spectrogram) say("sound    " + pictures.spectrogram->string());
+  for (const auto& drawn : pictures.spectrograms) say("sound    " + drawn.string());
   if (pictures.report) say("report   " + pictures.report->string());
 }
 
@@ -104,7 +104,9 @@ int run_command(const CommandContext& context, const RunRequest& request) {
     nlohmann::ordered_json json = outcome_json(result.record, result.folder);
     json["stopped"] = false;
     if (pictures.figure) json["figure"] = pictures.figure->string();
-    if (pictures.spectrogram) json["spectrogram"] = pictures.spectrogram->string();
+    for (const auto& drawn : pictures.spectrograms) {
+      json["spectrograms"].push_back(drawn.string());
+    }
     if (pictures.report) json["report"] = pictures.report->string();
     print_json(json);
   }

@@ -67,10 +67,9 @@ int render_command(const CommandContext& context, const RenderRequest& request) 
   const fs::path figure = folder / "figure.png";
   say("picture  " + figure.string());
   nlohmann::ordered_json result{{"run", folder.string()}, {"figure", figure.string()}};
-  if (draw_spectrogram(run, view)) {
-    const fs::path spectrogram = folder / "spectrogram.png";
-    say("sound    " + spectrogram.string());
-    result["spectrogram"] = spectrogram.string();
+  for (const fs::path& drawn : draw_spectrograms(run, view)) {
+    say("sound    " + drawn.string());
+    result["spectrograms"].push_back(drawn.string());
   }
   if (context.json) print_json(result);
   return done;

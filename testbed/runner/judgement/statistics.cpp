@@ -57,6 +57,14 @@ double ratio_to_spread(double distance, double half_range) {
 
 }  // namespace
 
+Interval jackknife_interval(double value, std::span<const double> without) {
+  if (without.size() < 2) throw Error("a jackknife needs two parts", "study");
+  const auto n = static_cast<double>(without.size());
+  const double error = standard_deviation(without) * (n - 1) / std::sqrt(n);
+  const double half = student_t(0.95, static_cast<int>(without.size()) - 1) * error;
+  return {value, value - half, value + half};
+}
+
 double student_t(double probability, int degrees_of_freedom) {
   double low = 0, high = 1;
   while (central_probability(high, degrees_of_freedom) < probability) high *= 2;

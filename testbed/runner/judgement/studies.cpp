@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "core/error.h"
 #include "testbed/runner/judgement/statistics.h"
@@ -36,13 +37,18 @@ bool is_slope(const StudySpec& study) {
   return study.kind == StudyKind::exponent || study.kind == StudyKind::order;
 }
 
-/// The study's quantity of a variant in a case; absent when the case does not have the variant, or
-/// only some of its frames.
-std::optional<double> value_in(const CaseRecord& in, const std::string& name,
-                               const StudySpec& study) {
+/// Null when the case does not have the variant, or only some of its frames.
+const VariantRecord* variant_in(const CaseRecord& in, const std::string& name) {
   const auto variant = std::find_if(in.variants.begin(), in.variants.end(),
                                     [&](const auto& v) { return v.name == name; });
-  if (variant == in.variants.end() || variant->status == "failed") return std::nullopt;
+  return variant == in.variants.end() || variant->status == "failed" ? nullptr : &*variant;
+}
+
+/// The study's quantity of a variant in a case; absent when the case has no such variant.
+std::optional<double> value_in(const CaseRecord& in, const std::string& name,
+                               const StudySpec& study) {
+  const VariantRecord* variant = variant_in(in, name);
+  if (variant == nullptr) return std::nullopt;
   return quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
 }
 
@@ -87,9 +93,57 @@ Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uin
   return slope;
 }
 
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+/// The quantity of the events of all variants but one, in time one variant after another.
+double pooled_value(const StudySpec& study, const std::vector<const VariantRecord*>& variants,
+                    const VariantRecord* left_out) {
+  std::vector<Event> all;
+  double begin = 0, end = 0;
+  for (const VariantRecord* variant : variants) {
+    if (variant == left_out) continue;
+    for (Event event : variant->events) {
+      event.time_s += begin;
+      end = std::max(end, event.time_s);
+      all.push_back(std::move(event));
+    }
+    begin = end;
+  }
+  return study.of_events(all).value_or(kAbsent);
+}
+
+/// The quantity of the events of all cases together; y: of all but those of one.
+Interval add_pooled(StudyRecord& record, const StudySpec& study,
+                    const std::vector<const CaseRecord*>& cases) {
+  std::vector<const VariantRecord*> variants;
+  for (const CaseRecord* in : cases) {
+    if (const VariantRecord* found = variant_in(*in, study.variant)) variants.push_back(found);
+  }
+  for (const VariantRecord* variant : variants) {
+    record.x.push_back(static_cast<double>(record.x.size()));
+    record.y.push_back(pooled_value(study, variants, variant));
+  }
+  const double value = pooled_value(study, variants, nullptr);
+  const bool known = !std::isnan(value) &&
+                     std::none_of(record.y.begin(), record.y.end(), [](double y) { return std::isnan(y); });
+  return known && variants.size() > 1 ? jackknife_interval(value, record.y)
+                                    : Interval{value, kAbsent, kAbsent};
+}
+
+std::vector<const CaseRecord*> cases_of(const StudySpec& study, const RunRecord& record) {
+  std::vector<const CaseRecord*> cases;
+  for (const CaseRecord& in : record.cases) {
+    const bool named = study.cases.empty() ||
+                       std::find(study.cases.begin(), study.cases.end(), in.name) != study.cases.end();
+    if (named) cases.push_back(&in);
+  }
+  return cases;
+}
+
 std::string needed_by(const StudySpec& study) {
-  if (study.kind == StudyKind::spread)
+  if (study.kind == StudyKind::spread || study.kind == StudyKind::pooled) {
     return "at least 2 cases with variant '" + study.variant + "'";
+  }
   if (study.kind == StudyKind::within_spread) {
     return "at least 2 cases with variants '" + study.variant + "' and '" + study.of + "'";
   }
@@ -105,17 +159,20 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
     made.name = study.name;
     made.kind = text_of(study.kind);
     made.quantity = study.quantity;
-    for (const CaseRecord& in : record.cases) {
-      const bool named = study.cases.empty() || std::find(study.cases.begin(), study.cases.end(),
-                                                          in.name) != study.cases.end();
-      if (named) add_point(made, study, in);
+    const std::vector<const CaseRecord*> cases = cases_of(study, record);
+    Interval interval;
+    if (study.kind == StudyKind::pooled) {
+      interval = add_pooled(made, study, cases);
+    } else {
+      for (const CaseRecord* in : cases) add_point(made, study, *in);
     }
     if (made.x.size() < 2) {
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
                   "study '" + study.name + "'", needed_by(study));
     }
-    const Interval interval =
-        interval_of(study, made, record.cases.empty() ? 1 : record.cases.front().seed);
+    if (study.kind != StudyKind::pooled) {
+      interval = interval_of(study, made, record.cases.front().seed);
+    }
     made.value = interval.value;
     made.low = interval.low;
     made.high = interval.high;

@@ -41,7 +41,8 @@ std::string unit_of(const Topic& topic, const std::string& quantity) {
 }
 
 std::string unit_of(const Topic& topic, const StudySpec& study) {
-  return study.kind == StudyKind::spread ? unit_of(topic, study.quantity) : "1";
+  const bool of_quantity = study.kind == StudyKind::spread || study.kind == StudyKind::pooled;
+  return of_quantity ? unit_of(topic, study.quantity) : "1";
 }
 
 void add_counted_work(const Topic& topic, const VariantRecord& variant,
@@ -175,6 +176,7 @@ Gate Gates::of_study(const StudySpec& study) const {
       gate.tolerance = kSlope;
       break;
     case StudyKind::spread:
+    case StudyKind::pooled:
       gate.tolerance = of_quantity(study.quantity);
       break;
     case StudyKind::within_spread:
@@ -224,6 +226,7 @@ GatedValues gated_values(const Experiment& experiment, const Topic& topic, const
     const auto study = std::find_if(studies.begin(), studies.end(),
                                     [&](const StudyRecord& s) { return s.name == spec.name; });
     if (study == studies.end()) throw Error("is not in the run", "study '" + spec.name + "'");
+    if (std::isnan(study->value)) continue;  // pooled events that have no such value
     values[""][""]["study:" + spec.name] = {study->value, unit_of(topic, spec)};
   }
   return values;

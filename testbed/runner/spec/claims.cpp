@@ -243,6 +243,29 @@ void require_own_claim(const ClaimSpec& claim, const std::vector<ClaimSpec>& bef
   }
 }
 
+/// Whether a sweep runs the variant under further seeds, for claims alone.
+bool runs_under_seeds(const TomlNode& root, const std::string& variant) {
+  for (const TomlNode& node : tables_of(root, "sweep")) {
+    TomlNode plain = node;
+    for (const char* key : {"values", "quick_values"}) plain.erase(key);
+    SweepTable sweep;
+    read_options(plain, "sweep", sweep);
+    const bool has = sweep.variants.empty() || contains(sweep.variants, variant);
+    if (sweep.key == "seed" && sweep.claims_only && has) return true;
+  }
+  return false;
+}
+
+/// What is drawn by chance is decided over its seeds, not by the one of the file.
+void require_seeds(const ClaimSpec& claim, const TomlNode& root, const Topic& topic,
+                   const TomlNode& node) {
+  if (claim.over == ClaimOver::seed || has_prefix(claim.metric)) return;
+  const MetricEntry* row = find_metric(topic, claim.metric);
+  if (row == nullptr || row->oracle || !runs_under_seeds(root, claim.variant)) return;
+  throw Error("'" + claim.variant + "' runs under further seeds, and one would decide the claim",
+              place_of(node, "over"), "over = \"seed\"");
+}
+
 /// False where --variant left out what the claim is about; throws for a mistake of the file.
 bool is_decidable(const ClaimSpec& claim, const TomlNode& root, const Topic& topic,
                   const KnownNames& names, const TomlNode& node) {
@@ -284,6 +307,7 @@ std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
       claim.variant = variant;
       require_sides(claim, node);
       require_own_claim(claim, claims, node);
+      require_seeds(claim, root, topic, node);
       if (!is_decidable(claim, root, topic, names, node)) continue;
       made.push_back(claim);
       complete(made.back(), topic, names, tolerances, decided_studies, node);
@@ -292,6 +316,30 @@ std::vector<ClaimSpec> read_claims(const TomlNode& root, const Topic& topic,
   }
   return claims;
 }
+
+namespace {
+
+/// Of a study of the kind "pooled": its quantity of events. @throws Error  where it needs more
+std::function<std::optional<double>(const std::vector<Event>&)> pooled_quantity(
+    const StudyTable& table, const Topic& topic, const TomlNode& node) {
+  if (table.kind != StudyKind::pooled) return {};
+  Names pooled;
+  for (const MetricGroup& group : topic.metrics) {
+    for (std::size_t i = 0; group.of_events && i < group.rows.size(); ++i) {
+      pooled.push_back(group.rows[i].name);
+      if (pooled.back() != table.quantity) continue;
+      return [of_events = group.of_events, i](const std::vector<Event>& events) {
+        return of_events(events).at(i);
+      };
+    }
+  }
+  throw Error("'" + table.quantity + "' is not measured of events alone",
+              place_of(node, "quantity"),
+              pooled.empty() ? "another kind: topic " + topic.name + " has no such metric"
+                             : allowed_names(table.quantity, pooled));
+}
+
+}  // namespace
 
 std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
                                     const KnownNames& names) {
@@ -325,12 +373,13 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
       throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
                   "the variant whose spread is the yardstick, for kind = \"within-spread\"");
     }
+    auto of_events = pooled_quantity(table, topic, node);
     bool decidable = runs(table.variant, names, place_of(node, "variant"));
     if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
     if (!decidable) continue;
     studies.push_back({table.name, table.kind, table.variant, table.quantity,
                        table.against.value_or(""), table.reduce, table.cases, table.finer,
-                       table.of.value_or("")});
+                       table.of.value_or(""), std::move(of_events)});
   }
   return studies;
 }

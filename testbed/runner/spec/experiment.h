@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -87,6 +88,8 @@ struct StudySpec {
   std::vector<std::string> cases;        ///< empty: every case that has the variant and `against`
   Finer finer = Finer::smaller;          ///< of `order`
   std::string of;                        ///< of `within_spread`: the variant that is the yardstick
+  /// Of `pooled`: the quantity of events; absent where they have none.
+  std::function<std::optional<double>(const std::vector<Event>&)> of_events = {};
 };
 
 /// The study that the claim is about; null when it is about a variant.

@@ -100,8 +100,9 @@ void describe(OptionVisitor& v, ClaimTable& t) {
 void describe(OptionVisitor& v, StudyTable& t) {
   v.value("name", t.name, {.doc = "name of the study", .required = true});
   describe_choice(v, "kind", t.kind, kStudyKinds,
-                  {.doc = "slope in log-log, observed order of convergence, standard deviation, or "
-                          "distance of two medians over half the range of `of`"});
+                  {.doc = "slope in log-log, observed order of convergence, standard deviation, "
+                          "distance of two medians over half the range of `of`, or a metric of the "
+                          "events of all cases together"});
   v.value("variant", t.variant, {.doc = "variant whose quantity is studied", .required = true});
   v.value(
       "quantity", t.quantity,

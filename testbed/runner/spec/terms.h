@@ -19,10 +19,10 @@ inline constexpr std::array<std::string_view, 9> kReductions{"max",  "min", "med
 
 /// `exponent`: slope of log y against log x; `order`: observed order of convergence; `spread`:
 /// standard deviation; `within_spread`: distance of the medians of two variants over half the range
-/// of the second.
-enum class StudyKind { exponent, order, spread, within_spread };
-inline constexpr std::array<std::string_view, 4> kStudyKinds{"exponent", "order", "spread",
-                                                             "within-spread"};
+/// of the second; `pooled`: a metric of the events of all cases together.
+enum class StudyKind { exponent, order, spread, within_spread, pooled };
+inline constexpr std::array<std::string_view, 5> kStudyKinds{"exponent", "order", "spread",
+                                                             "within-spread", "pooled"};
 
 /// What a claim is decided over: each of its cases by itself, or all seeds of one case together.
 enum class ClaimOver { case_, seed };

@@ -75,23 +75,23 @@ std::string times_text(const FigureBlock& block) {
   return text;
 }
 
-}  // namespace
-
-bool draw_spectrogram(const OpenedRun& run, const FigureView& wanted) {
+/// Into `file`, of the view's first case.
+/// @return  whether there is a sound
+bool draw_first_case(const OpenedRun& run, FigureView view, const fs::path& file) {
   const RunRecord& record = run.record();
-  FigureView view = with_scene_camera(wanted, record, (run.folder() / "run.h5").string());
   std::vector<const VariantRecord*> variants = sounding_variants(record, view);
   if (variants.empty()) return false;
   variants.resize(std::min(variants.size(), kMostVariants));
   const CaseRecord& of = *first_drawn_case(record, view);
-  std::vector<std::string> arguments{run.folder().string(), "--case", of.name};
+  std::vector<std::string> arguments{run.folder().string(), "--case", of.name, "--out",
+                                     file.string()};
   if (run.unverified() == Unverified::used) arguments.emplace_back("--force");
   view.variants.clear();
   for (const VariantRecord* variant : variants) {
     view.variants.push_back(variant->name);
     arguments.insert(arguments.end(), {"--variant", variant->name});
   }
-  const PassingFile frames(path_below(run.folder(), "spectrogram-frames.png"));
+  const PassingFile frames(path_below(run.folder(), "strip-of-frames.png"));
   if (has_times(of) && !frame_parameters(record, view).empty()) {
     const FigureBlock block = frames_block(run, view);
     const Display display;
@@ -101,6 +101,22 @@ bool draw_spectrogram(const OpenedRun& run, const FigureView& wanted) {
   }
   run_python("spectrogram", arguments);
   return true;
+}
+
+}  // namespace
+
+std::vector<fs::path> draw_spectrograms(const OpenedRun& run, const FigureView& wanted) {
+  FigureView view = with_scene_camera(wanted, run.record(), (run.folder() / "run.h5").string());
+  std::vector<std::string> cases = view.cases;
+  if (cases.empty()) cases.emplace_back();
+  std::vector<fs::path> drawn;
+  for (const std::string& name : cases) {
+    view.cases = name.empty() ? view.cases : std::vector<std::string>{name};
+    const std::string file = drawn.empty() ? "spectrogram.png" : "spectrogram-" + name + ".png";
+    const fs::path path = path_below(run.folder(), file);
+    if (draw_first_case(run, view, path)) drawn.push_back(path);
+  }
+  return drawn;
 }
 
 }  // namespace geoprior

@@ -297,6 +297,64 @@ TEST(Studies, SpreadIsTheStandardDeviationWithAReproducibleInterval) {
   EXPECT_EQ(make(study(StudyKind::spread, ""), record).low, s.low);
 }
 
+/// Cases with events of these energies, each a second after the one before.
+RunRecord sheets(const std::vector<std::vector<double>>& energies) {
+  RunRecord record;
+  for (const std::vector<double>& of_sheet : energies) {
+    CaseRecord in = record_of({variant("a", {0})}).cases[0];
+    in.name = "sheet " + std::to_string(record.cases.size());
+    double time = 0;
+    for (const double energy : of_sheet) {
+      Event event;
+      event.time_s = time++;
+      event.energy_J = energy;
+      in.variants[0].events.push_back(event);
+    }
+    record.cases.push_back(in);
+  }
+  return record;
+}
+
+/// Mean energy; absent of fewer than three events.
+StudySpec pooled_mean() {
+  StudySpec s = study(StudyKind::pooled, "");
+  s.of_events = [](const std::vector<Event>& events) -> std::optional<double> {
+    if (events.size() < 3) return std::nullopt;
+    double sum = 0;
+    for (const Event& event : events) sum += event.energy_J;
+    return sum / static_cast<double>(events.size());
+  };
+  return s;
+}
+
+TEST(Studies, PooledEventsHaveTheJackknifesInterval) {
+  const StudyRecord s = make(pooled_mean(), sheets({{1}, {2}, {3}, {4}, {10}}));
+  EXPECT_NEAR(s.value, 4, 1e-14);
+  EXPECT_EQ(s.y, (std::vector<double>{19 / 4.0, 18 / 4.0, 17 / 4.0, 16 / 4.0, 10 / 4.0}));
+  // Of a mean the jackknife's error is the standard error: squares about it are 50.
+  EXPECT_NEAR(s.high - s.value, student_t(0.95, 4) * std::sqrt(50.0 / 4 / 5), 1e-12);
+  EXPECT_NEAR(s.value - s.low, s.high - s.value, 1e-12);
+}
+
+TEST(Studies, PooledEventsWithoutAValueHaveNoneOrNoInterval) {
+  EXPECT_TRUE(std::isnan(make(pooled_mean(), sheets({{1}, {2}})).value));
+  const StudyRecord s = make(pooled_mean(), sheets({{1}, {2}, {3}}));
+  EXPECT_EQ(s.value, 2);
+  EXPECT_TRUE(std::isnan(s.low)) << "two events are too few";
+}
+
+TEST(Studies, PooledEventsAreInTimeOneCaseAfterAnother) {
+  StudySpec s = study(StudyKind::pooled, "");
+  std::vector<double> times;
+  s.of_events = [&](const std::vector<Event>& events) -> std::optional<double> {
+    times.clear();
+    for (const Event& event : events) times.push_back(event.time_s);
+    return 0;
+  };
+  make(s, sheets({{1, 1}, {1, 1, 1}}));
+  EXPECT_EQ(times, (std::vector<double>{0, 1, 1, 2, 3}));
+}
+
 /// Cases of two variants with these errors.
 RunRecord seeds(const std::vector<double>& a, const std::vector<double>& b) {
   RunRecord record;

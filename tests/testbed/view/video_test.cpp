@@ -162,14 +162,42 @@ TEST(Video, OfAnFfmpegWithoutTheCodecIsOneErrorThatSaysSo) {
 TEST(Spectrogram, IsDrawnWithFramesWhereTheRunHasASound) {
   const TestFolder folder;
   make_fake_run(folder.path / "mute");
-  EXPECT_FALSE(draw_spectrogram(OpenedRun(folder.path / "mute"), {}));
+  EXPECT_TRUE(draw_spectrograms(OpenedRun(folder.path / "mute"), {}).empty());
   EXPECT_FALSE(fs::exists(folder.path / "mute/spectrogram.png"));
   const fs::path run = folder.path / "run";
   make_sounding_run(run, {0, 0.5, 1});
   ::unsetenv("DISPLAY");
-  EXPECT_TRUE(draw_spectrogram(OpenedRun(run), side_view()));
+  EXPECT_THAT(draw_spectrograms(OpenedRun(run), side_view()),
+              testing::ElementsAre(run / "spectrogram.png"));
   EXPECT_EQ(read_whole_file(run / "spectrogram.png").substr(1, 3), "PNG");
-  EXPECT_FALSE(fs::exists(run / "spectrogram-frames.png"));
+  EXPECT_FALSE(fs::exists(run / "strip-of-frames.png"));
+}
+
+TEST(Spectrogram, IsDrawnOfEachCaseThatTheViewNames) {
+  const TestFolder folder;
+  RunRecord record = make_sounding_run(folder.path, {0, 0.5, 1});
+  record.cases.push_back(record.cases[0]);
+  record.cases[1].name = "mute";
+  for (VariantRecord& variant : record.cases[1].variants) {
+    variant.frames.clear();
+    variant.artifacts.clear();
+  }
+  record.cases.push_back(record.cases[1]);
+  record.cases[2].name = "again";
+  StoredFile sound = record.cases[0].variants[1].artifacts.back();
+  const fs::path heard = folder.path / "artifacts/again/second-box/mix.wav";
+  make_folders(heard.parent_path());
+  fs::copy_file(folder.path / sound.name, heard);
+  sound.name = "artifacts/again/second-box/mix.wav";
+  record.cases[2].variants[1].artifacts = {sound};
+  write_fake_run(record, folder.path);
+  FigureView view = side_view();
+  view.cases = {"mute", "again", "default"};
+  EXPECT_THAT(
+      draw_spectrograms(OpenedRun(folder.path), view),
+      testing::ElementsAre(folder.path / "spectrogram.png", folder.path / "spectrogram-default.png"));
+  EXPECT_NE(read_whole_file(folder.path / "spectrogram.png"),
+            read_whole_file(folder.path / "spectrogram-default.png"));
 }
 
 TEST(Video, IsLeftOutAfterCtrlC) {

@@ -170,6 +170,20 @@ TEST_F(SpecClaims, ReductionsOfBothSidesOfAClaim) {
               HasSubstr("frame by frame"));
 }
 
+TEST_F(SpecClaims, WhatRunsUnderFurtherSeedsIsDecidedOverThem) {
+  const auto file = [&](const std::string& of_sweep, const std::string& of_claim) {
+    return disc_with("[[sweep]]\nkey = \"seed\"\nvalues = [2, 3]\n" + of_sweep +
+                     "[[claim]]\ntext = \"small, in 9 of 10 seeds\"\nmetric = \"radius_error\"\n"
+                     "variant = \"polygon\"\nvalue = 1\n" +
+                     of_claim);
+  };
+  const std::string for_claims = "claims_only = true\n", over = "over = \"seed\"\n";
+  EXPECT_THAT(error_of(file(for_claims, "")), HasSubstr("one would decide the claim"));
+  EXPECT_EQ(load(file(for_claims, over)).claims.at(0).over, ClaimOver::seed);
+  EXPECT_EQ(load(file("", "")).claims.size(), 1U) << "each seed is a case of its own";
+  EXPECT_EQ(load(file(for_claims + "variants = [\"exact\"]\n", "")).claims.size(), 1U);
+}
+
 TEST_F(SpecClaims, WithinSpreadNamesItsYardstick) {
   const std::string sweep = "[[sweep]]\nkey = \"seed\"\nvalues = [1, 2, 3]\nbase = false\n";
   const auto study = [&](const std::string& kind, const std::string& of) {
@@ -181,6 +195,7 @@ TEST_F(SpecClaims, WithinSpreadNamesItsYardstick) {
   EXPECT_THAT(error_of(study("spread", "of = \"exact\"\n")), HasSubstr("no meaning"));
   EXPECT_THAT(error_of(study("within-spread", "of = \"circle\"\n")),
               HasSubstr("no variant 'circle'"));
+  EXPECT_THAT(error_of(study("pooled", "")), HasSubstr("is not measured of events alone"));
 }
 
 }  // namespace
