@@ -51,8 +51,8 @@ std::optional<VoiceDistance> voice_distance(const FrameSequence& frames);
 /// Power law of the energies of flaps and cracs (metrics/sound/power_law.h). Absent where no
 /// animation was listened to.
 struct EnergyExponent {
-  std::optional<double> stated;  ///< absent: withheld
-  std::optional<double> fitted;  ///< whether it may be stated or not
+  std::optional<double> stated;   ///< absent: withheld
+  std::optional<double> fitted;   ///< whether it may be stated or not
   std::optional<double> p_value;  ///< of the fit
   double count = 0;               ///< energies in the tail
 };

@@ -131,7 +131,8 @@ MetricGroup energy_exponent_group() {
       .row("energy_exponent_fitted", "1", "the same, whether it may be stated or not", kNone,
            {0.02, 0}, [](M m) { return m.fitted; })
       .row("energy_exponent_p_value", "1",
-           "share of samples of the fitted law that lie as far from their fit (Clauset et al. 2009): "
+           "share of samples of the fitted law that lie as far from their fit (Clauset et al. "
+           "2009): "
            "below a tenth the energies obey no power law",
            kNone, {0.05, 0}, [](M m) { return m.p_value; })
       .row("energy_exponent_count", "1", "energies in its tail", kNone, kCount,

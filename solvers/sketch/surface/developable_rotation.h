@@ -32,8 +32,8 @@ void describe(OptionVisitor& v, DevelopableRotationOptions& options);
 /// the normals are spread evenly A is n itself, the "cone" is a needle about n, and turning the
 /// normals to its angle drives them apart. `guarded` takes the best axis that is at least
 /// `guard_deg` away from n. Every triangle is turned while its neighbours are: going half as far
-/// again (`relaxation`) takes about two thirds of the iterations, twice as far no longer settles. Patches that are
-/// flat (second eigenvalue below 1e-10) are left alone.
+/// again (`relaxation`) takes about two thirds of the iterations, twice as far no longer settles.
+/// Patches that are flat (second eigenvalue below 1e-10) are left alone.
 class DevelopableRotation {
  public:
   DevelopableRotation(const Eigen::MatrixX3i& F, int vertex_count,

@@ -26,9 +26,9 @@ Interval spread_with_interval(std::span<const double> values, RandomStream rando
 Interval median_distance_with_interval(std::span<const double> values,
                                        std::span<const double> yardstick, RandomStream random);
 
-/// Student's 95 % interval about `value` of the standard error that the jackknife gives (Efron 1982):
-/// of n parts of a sample `without` has the value of all but one each, and the squared error is
-/// (n - 1) / n times the sum of their squared distances from their mean.
+/// Student's 95 % interval about `value` of the standard error that the jackknife gives (Efron
+/// 1982): of n parts of a sample `without` has the value of all but one each, and the squared error
+/// is (n - 1) / n times the sum of their squared distances from their mean.
 /// @throws Error  with fewer than two values
 Interval jackknife_interval(double value, std::span<const double> without);
 

@@ -124,17 +124,17 @@ Interval add_pooled(StudyRecord& record, const StudySpec& study,
     record.y.push_back(pooled_value(study, variants, variant));
   }
   const double value = pooled_value(study, variants, nullptr);
-  const bool known = !std::isnan(value) &&
-                     std::none_of(record.y.begin(), record.y.end(), [](double y) { return std::isnan(y); });
+  const bool known = !std::isnan(value) && std::none_of(record.y.begin(), record.y.end(),
+                                                        [](double y) { return std::isnan(y); });
   return known && variants.size() > 1 ? jackknife_interval(value, record.y)
-                                    : Interval{value, kAbsent, kAbsent};
+                                      : Interval{value, kAbsent, kAbsent};
 }
 
 std::vector<const CaseRecord*> cases_of(const StudySpec& study, const RunRecord& record) {
   std::vector<const CaseRecord*> cases;
   for (const CaseRecord& in : record.cases) {
-    const bool named = study.cases.empty() ||
-                       std::find(study.cases.begin(), study.cases.end(), in.name) != study.cases.end();
+    const bool named = study.cases.empty() || std::find(study.cases.begin(), study.cases.end(),
+                                                        in.name) != study.cases.end();
     if (named) cases.push_back(&in);
   }
   return cases;

@@ -193,9 +193,9 @@ TEST(Spectrogram, IsDrawnOfEachCaseThatTheViewNames) {
   write_fake_run(record, folder.path);
   FigureView view = side_view();
   view.cases = {"mute", "again", "default"};
-  EXPECT_THAT(
-      draw_spectrograms(OpenedRun(folder.path), view),
-      testing::ElementsAre(folder.path / "spectrogram.png", folder.path / "spectrogram-default.png"));
+  EXPECT_THAT(draw_spectrograms(OpenedRun(folder.path), view),
+              testing::ElementsAre(folder.path / "spectrogram.png",
+                                   folder.path / "spectrogram-default.png"));
   EXPECT_NE(read_whole_file(folder.path / "spectrogram.png"),
             read_whole_file(folder.path / "spectrogram-default.png"));
 }
