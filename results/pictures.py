@@ -16,8 +16,8 @@ from runfile import RunFileError, require_regular_file, write_atomically
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 KEYWORD = b"geoprior content_sha256"
-MOST_BYTES = 1 << 20  # of a picture as it was drawn; a larger one is reduced to the width that pages show
-PAGE_WIDTH = 1200
+MOST_BYTES = 1 << 20  # of a picture as it was drawn; a larger one is reduced to the width that pages show, or less
+WIDTHS = (1200, 900, 600)
 SHOWN = re.compile(r"!\[[^]]*\]\(([^)]+\.png)\)")
 
 
@@ -82,9 +82,12 @@ def reduced(content):
     if len(content) <= MOST_BYTES:
         return content
     image = Image.open(io.BytesIO(content)).convert("RGB")
-    height = round(image.height * PAGE_WIDTH / image.width)
-    out = io.BytesIO()
-    image.resize((PAGE_WIDTH, height), Image.Resampling.LANCZOS).save(out, "PNG", optimize=True)
+    for width in WIDTHS:
+        out = io.BytesIO()
+        image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS).save(
+            out, "PNG", optimize=True)
+        if out.tell() <= MOST_BYTES:
+            break
     return out.getvalue()
 
 

@@ -328,6 +328,12 @@ class Pictures(Scratch):
         self.assertEqual(Image.open(self.picture).size, (1200, 257))
         self.assertEqual(pictures.stamp_of(content, "knee.png"), data["content_sha256"])
 
+    def test_that_are_tall_are_reduced_further(self):
+        noise = np.random.default_rng(1).integers(0, 256, (900, 1600, 3), np.uint8)
+        Image.fromarray(noise).save(self.run / "figure.png")
+        self.publish()
+        self.assertEqual(Image.open(self.picture).size, (600, 338))
+
     def test_of_another_run_or_of_none_are_named(self):
         self.picture.write_bytes(pictures.stamped(self.ONE_PIXEL, "knee.png", "f" * 64))
         self.assertRegex(self.problem(), "docs/knee.png: is a picture of run f{12}, the record of test/knee is of ")
