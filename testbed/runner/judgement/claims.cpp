@@ -219,8 +219,8 @@ std::map<std::string, std::string> without_seed(std::map<std::string, std::strin
   return swept;
 }
 
-/// The cases that a claim is decided in: one a group, or all seeds of one. Cases that are there for
-/// claims over seeds decide no other: the file's own seed does.
+/// The cases that a claim is decided in: one a group, or all seeds of one. Of what is not decided
+/// over seeds (times and oracles, where further seeds run) the file's own seed decides.
 std::vector<Cases> groups_of(const ClaimSpec& claim, const RunRecord& record) {
   std::vector<Cases> groups;
   for (const CaseRecord& in : record.cases) {

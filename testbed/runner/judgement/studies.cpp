@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 
 #include "core/error.h"
 #include "testbed/runner/judgement/statistics.h"
@@ -39,9 +38,8 @@ bool is_slope(const StudySpec& study) {
 
 /// Null when the case does not have the variant, or only some of its frames.
 const VariantRecord* variant_in(const CaseRecord& in, const std::string& name) {
-  const auto variant = std::find_if(in.variants.begin(), in.variants.end(),
-                                    [&](const auto& v) { return v.name == name; });
-  return variant == in.variants.end() || variant->status == "failed" ? nullptr : &*variant;
+  const VariantRecord* variant = find_variant(in, name);
+  return variant == nullptr || variant->status == "failed" ? nullptr : variant;
 }
 
 /// The study's quantity of a variant in a case; absent when the case has no such variant.
@@ -77,7 +75,17 @@ Interval logarithmic_slope(const StudyRecord& record) {
   return slope_with_interval(x, y);
 }
 
+/// No interval where there is no value, or none without one of the cases.
+Interval pooled_interval(const StudyRecord& record) {
+  const auto is_absent = [](double value) { return std::isnan(value); };
+  if (!is_absent(record.value) && std::none_of(record.y.begin(), record.y.end(), is_absent)) {
+    return jackknife_interval(record.value, record.y);
+  }
+  return {record.value, std::nan(""), std::nan("")};
+}
+
 Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
+  if (study.kind == StudyKind::pooled) return pooled_interval(record);
   if (study.kind == StudyKind::spread) {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
   }
@@ -93,9 +101,8 @@ Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uin
   return slope;
 }
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
-/// The quantity of the events of all variants but one, in time one variant after another.
+/// The quantity of the events of all variants but one, in time one variant after another; NaN where
+/// they have none.
 double pooled_value(const StudySpec& study, const std::vector<const VariantRecord*>& variants,
                     const VariantRecord* left_out) {
   std::vector<Event> all;
@@ -109,12 +116,12 @@ double pooled_value(const StudySpec& study, const std::vector<const VariantRecor
     }
     begin = end;
   }
-  return study.of_events(all).value_or(kAbsent);
+  return study.of_events(all).value_or(std::nan(""));
 }
 
-/// The quantity of the events of all cases together; y: of all but those of one.
-Interval add_pooled(StudyRecord& record, const StudySpec& study,
-                    const std::vector<const CaseRecord*>& cases) {
+/// The value: of the events of all cases together; y: of all but those of one.
+void add_pooled(StudyRecord& record, const StudySpec& study,
+                const std::vector<const CaseRecord*>& cases) {
   std::vector<const VariantRecord*> variants;
   for (const CaseRecord* in : cases) {
     if (const VariantRecord* found = variant_in(*in, study.variant)) variants.push_back(found);
@@ -123,11 +130,7 @@ Interval add_pooled(StudyRecord& record, const StudySpec& study,
     record.x.push_back(static_cast<double>(record.x.size()));
     record.y.push_back(pooled_value(study, variants, variant));
   }
-  const double value = pooled_value(study, variants, nullptr);
-  const bool known = !std::isnan(value) && std::none_of(record.y.begin(), record.y.end(),
-                                                        [](double y) { return std::isnan(y); });
-  return known && variants.size() > 1 ? jackknife_interval(value, record.y)
-                                      : Interval{value, kAbsent, kAbsent};
+  record.value = pooled_value(study, variants, nullptr);
 }
 
 std::vector<const CaseRecord*> cases_of(const StudySpec& study, const RunRecord& record) {
@@ -160,9 +163,8 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
     made.kind = text_of(study.kind);
     made.quantity = study.quantity;
     const std::vector<const CaseRecord*> cases = cases_of(study, record);
-    Interval interval;
     if (study.kind == StudyKind::pooled) {
-      interval = add_pooled(made, study, cases);
+      add_pooled(made, study, cases);
     } else {
       for (const CaseRecord* in : cases) add_point(made, study, *in);
     }
@@ -170,9 +172,7 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
                   "study '" + study.name + "'", needed_by(study));
     }
-    if (study.kind != StudyKind::pooled) {
-      interval = interval_of(study, made, record.cases.front().seed);
-    }
+    const Interval interval = interval_of(study, made, record.cases.front().seed);
     made.value = interval.value;
     made.low = interval.low;
     made.high = interval.high;

@@ -8,6 +8,7 @@
 #include "testbed/runner/names.h"
 #include "testbed/runner/options/toml.h"
 #include "testbed/runner/spec/overrides.h"
+#include "testbed/runner/spec/sweeps.h"
 #include "testbed/runner/spec/tables.h"
 
 namespace geoprior {
@@ -246,10 +247,7 @@ void require_own_claim(const ClaimSpec& claim, const std::vector<ClaimSpec>& bef
 /// Whether a sweep runs the variant under further seeds, for claims alone.
 bool runs_under_seeds(const TomlNode& root, const std::string& variant) {
   for (const TomlNode& node : tables_of(root, "sweep")) {
-    TomlNode plain = node;
-    for (const char* key : {"values", "quick_values"}) plain.erase(key);
-    SweepTable sweep;
-    read_options(plain, "sweep", sweep);
+    const SweepTable sweep = read_sweep_table(node);
     const bool has = sweep.variants.empty() || contains(sweep.variants, variant);
     if (sweep.key == "seed" && sweep.claims_only && has) return true;
   }

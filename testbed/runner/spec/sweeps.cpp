@@ -11,7 +11,6 @@
 #include "testbed/runner/options/toml.h"
 #include "testbed/runner/spec/json.h"
 #include "testbed/runner/spec/overrides.h"
-#include "testbed/runner/spec/tables.h"
 
 namespace geoprior {
 namespace {
@@ -102,10 +101,7 @@ void require_sweepable(const SweepTable& table, const TomlNode& node) {
 
 Sweep read_sweep(const TomlNode& node, bool quick) {
   Sweep sweep;
-  TomlNode plain = node;
-  plain.erase("values");
-  plain.erase("quick_values");
-  read_options(plain, "sweep", sweep.table);
+  sweep.table = read_sweep_table(node);
   require_sweepable(sweep.table, node);
   const std::vector<TomlNode> full = values_of(node, "values", true);
   const std::vector<TomlNode> reduced = values_of(node, "quick_values", false);
@@ -216,6 +212,15 @@ void make_names_unique(std::vector<Sweep>& sweeps) {
 }
 
 }  // namespace
+
+SweepTable read_sweep_table(const TomlNode& node) {
+  TomlNode plain = node;
+  plain.erase("values");
+  plain.erase("quick_values");
+  SweepTable table;
+  read_options(plain, "sweep", table);
+  return table;
+}
 
 std::vector<SweptCase> expand_sweeps(const TomlNode& root, bool quick) {
   std::vector<Sweep> sweeps;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "testbed/runner/spec/tables.h"
 #include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
@@ -21,6 +22,9 @@ struct SweptCase {
   bool claims_only = false;
   std::vector<std::pair<std::string, TomlNode>> changes;  ///< dotted keys and values, in order
 };
+
+/// The keys of a [[sweep]] beside its values.
+SweepTable read_sweep_table(const TomlNode& node);
 
 /// The cases of the sweeps; `quick` uses `quick_values` where they are given.
 /// @throws Error  naming the sweep with which there are more than `kMostCases`

@@ -108,10 +108,12 @@ bool draw_first_case(const OpenedRun& run, FigureView view, const fs::path& file
 std::vector<fs::path> draw_spectrograms(const OpenedRun& run, const FigureView& wanted) {
   FigureView view = with_scene_camera(wanted, run.record(), (run.folder() / "run.h5").string());
   std::vector<std::string> cases = view.cases;
-  if (cases.empty()) cases.emplace_back();
+  if (const CaseRecord* first = first_drawn_case(run.record(), view); first && cases.empty()) {
+    cases = {first->name};
+  }
   std::vector<fs::path> drawn;
   for (const std::string& name : cases) {
-    view.cases = name.empty() ? view.cases : std::vector<std::string>{name};
+    view.cases = {name};
     const std::string file = drawn.empty() ? "spectrogram.png" : "spectrogram-" + name + ".png";
     const fs::path path = path_below(run.folder(), file);
     if (draw_first_case(run, view, path)) drawn.push_back(path);
