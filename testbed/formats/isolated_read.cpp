@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -84,6 +86,40 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
+/// What a parsing child is sent before a request.
+struct RequestHeader {
+  std::uint64_t size = 0;
+  std::uint64_t memory = 0;
+  double seconds = 0;
+};
+
+/// Two ends of a connection that carries bytes both ways, as a pipe otherwise.
+class Connection {
+ public:
+  explicit Connection(const fs::path& file) {
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends_.data()) != 0) {
+      throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
+    }
+    for (const int end : ends_)  // only makes it faster
+      (void)::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kPipeBytes, sizeof kPipeBytes);
+  }
+  ~Connection() {
+    ::close(ends_[0]);
+    close_childs();
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  [[nodiscard]] int ours() const { return ends_[0]; }
+  [[nodiscard]] int childs() const { return ends_[1]; }
+  void close_childs() {
+    if (ends_[1] >= 0) ::close(std::exchange(ends_[1], -1));
+  }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+};
+
 /// No signal reaches this thread, nor a child that it forks, before the child has left our
 /// handlers.
 class BlockedSignals {
@@ -134,20 +170,30 @@ int keep_only(int pipe) {
   return kept;
 }
 
-void set_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
+/// @param for_good  no later limit may be higher
+void set_limit(decltype(RLIMIT_AS) resource, rlim_t value, bool for_good) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0) ::_exit(1);
-  limit.rlim_max = std::min(limit.rlim_max, value);
-  limit.rlim_cur = std::min(limit.rlim_cur, limit.rlim_max);
+  limit.rlim_cur = std::min(limit.rlim_max, value);
+  if (for_good) limit.rlim_max = limit.rlim_cur;
   if (::setrlimit(resource, &limit) != 0) ::_exit(1);
 }
 
+void write_no_files() {
+  set_limit(RLIMIT_CORE, 0, true);
+  if (!kAddressSanitizer) set_limit(RLIMIT_FSIZE, 0, true);
+}
+
+rlim_t seconds_used() {
+  rusage usage{};
+  if (::getrusage(RUSAGE_SELF, &usage) != 0) ::_exit(1);
+  return usage.ru_utime.tv_sec + usage.ru_stime.tv_sec;
+}
+
+/// Limits of what follows.
 void apply(const ChildLimits& limits, std::size_t mapped_before) {
-  set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)) + 1);
-  if (kAddressSanitizer) return;
-  set_limit(RLIMIT_FSIZE, 0);
-  set_limit(RLIMIT_AS, mapped_before + limits.memory);
+  set_limit(RLIMIT_CPU, seconds_used() + static_cast<rlim_t>(std::ceil(limits.seconds)) + 2, false);
+  if (!kAddressSanitizer) set_limit(RLIMIT_AS, mapped_before + limits.memory, false);
 }
 
 void send(int pipe, ReplyHeader::Kind kind, std::string_view bytes) {
@@ -156,28 +202,67 @@ void send(int pipe, ReplyHeader::Kind kind, std::string_view bytes) {
   write_all(pipe, bytes, "pipe");
 }
 
-void reply(int pipe, const std::function<std::vector<std::byte>()>& read) {
+/// False when there was something wrong.
+bool reply(int pipe, const std::function<std::vector<std::byte>()>& read) {
   try {
     const std::vector<std::byte> bytes = read();
     send(pipe, ReplyHeader::Kind::bytes,
          {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return true;
   } catch (const Error& e) {
     send(pipe, ReplyHeader::Kind::error, std::string_view(e.what()).substr(0, kLongestMessage));
   } catch (const std::bad_alloc&) {
     send(pipe, ReplyHeader::Kind::out_of_memory, {});
   }
+  return false;
+}
+
+/// @return  the descriptor that is left
+int begin_child(int descriptor, pid_t parent) {
+  default_signals();
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  const int kept = keep_only(descriptor);
+  write_no_files();
+  return kept;
+}
+
+/// False at the end of what is sent.
+bool receive_all(int connection, std::span<std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::read(connection, bytes.data(), bytes.size());
+    if (n == 0 || (n < 0 && errno != EINTR)) return false;
+    if (n > 0) bytes = bytes.subspan(n);
+  }
+  return true;
+}
+
+/// Answers requests until there are no more, or something is wrong with one.
+[[noreturn]] void serve(int connection, std::size_t mapped_before, ParsingChild::Parse parse) {
+  try {
+    RequestHeader header;
+    while (receive_all(connection, std::as_writable_bytes(std::span(&header, 1)))) {
+      apply({.memory = header.memory, .seconds = header.seconds}, mapped_before);
+      const bool good = reply(connection, [&] {
+        std::string request(header.size, '\0');
+        if (!receive_all(connection, std::as_writable_bytes(std::span(request)))) ::_exit(0);
+        return parse(request);
+      });
+      if (!good) break;
+    }
+  } catch (...) {  // of a library; the parent sees that there is no whole reply
+    ::_exit(1);
+  }
+  ::_exit(0);
 }
 
 [[noreturn]] void run_as_child(const Pipe& pipe, pid_t parent, const ChildLimits& limits,
                                std::size_t mapped_before,
                                const std::function<std::vector<std::byte>()>& read) {
-  default_signals();
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);
-  const int kept = keep_only(pipe.writer());
+  const int kept = begin_child(pipe.writer(), parent);
   apply(limits, mapped_before);
   try {
-    reply(kept, read);
+    (void)reply(kept, read);
   } catch (...) {  // of a library; the parent sees that there is no whole reply
     ::_exit(1);
   }
@@ -193,6 +278,13 @@ class Child {
   ~Child() { (void)end(); }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
+
+  /// Whether it has died since.
+  [[nodiscard]] bool is_gone() {
+    if (pid_ > 0 && ::waitpid(pid_, nullptr, WNOHANG) == 0) return false;
+    pid_ = 0;
+    return true;
+  }
 
   /// Kills it where it still runs. The signal it died of, or 0.
   int end() {
@@ -213,7 +305,7 @@ class Child {
 /// Thrown by `ReplyReader` when the child closes the pipe before its reply is whole.
 struct EndsEarly {};
 
-/// Bytes of the pipe, as long as there is time and nobody asks to stop.
+/// Bytes of the pipe or connection, as long as there is time and nobody asks to stop.
 class ReplyReader {
  public:
   ReplyReader(int pipe, const fs::path& file, const ChildLimits& limits)
@@ -223,10 +315,21 @@ class ReplyReader {
         end_(SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
                                       std::chrono::duration<double>(limits.seconds))) {}
 
+  /// To a connection. False when the child takes no more. @throws Error as `fill`
+  [[nodiscard]] bool send(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      await(POLLOUT);
+      const ssize_t n = ::send(pipe_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (n < 0 && errno != EINTR && errno != EAGAIN) return false;
+      if (n > 0) bytes.remove_prefix(n);
+    }
+    return true;
+  }
+
   /// @throws EndsEarly, or Error after the time or on a stop
   void fill(std::span<std::byte> bytes) const {
     while (!bytes.empty()) {
-      await();
+      await(POLLIN);
       const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
       if (n == 0 || (n < 0 && errno != EINTR)) throw EndsEarly();
       if (n > 0) bytes = bytes.subspan(n);
@@ -234,7 +337,7 @@ class ReplyReader {
   }
 
  private:
-  void await() const {
+  void await(short event) const {
     for (;;) {
       const auto left =
           std::chrono::duration_cast<std::chrono::milliseconds>(end_ - SteadyClock::now()).count();
@@ -243,7 +346,7 @@ class ReplyReader {
                         std::to_string(std::lround(limits_.seconds)) + " s",
                     file_.string());
       }
-      pollfd ready{pipe_, POLLIN, 0};
+      pollfd ready{pipe_, event, 0};
       constexpr long long kLongestWait_ms = 100;
       if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left, kLongestWait_ms))) > 0) {
         return;
@@ -313,6 +416,64 @@ std::vector<std::byte> read_in_child(const fs::path& file, const ChildLimits& li
     return receive(ReplyReader(pipe.reader(), file, limits), file, limits);
   } catch (const EndsEarly&) {
     throw early_end(child.end(), file);
+  }
+}
+
+struct ParsingChild::Running {
+  Running(const fs::path& file, Parse how) : connection(file) {
+    const std::size_t mapped = mapped_bytes();
+    pid_t pid = 0;
+    {
+      const BlockedSignals blocked;
+      pid = ::fork();
+      if (pid == 0) serve(begin_child(connection.childs(), parent), mapped, how);
+    }
+    if (pid < 0) {
+      throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
+    }
+    child.emplace(pid);
+    connection.close_childs();
+  }
+
+  pid_t parent = ::getpid();
+  Connection connection;
+  std::optional<Child> child;
+};
+
+ParsingChild::ParsingChild(Parse how) : parse_(how) {}
+
+ParsingChild::~ParsingChild() { leave_to_parent(); }
+
+/// In a fork of the process whose child it is: neither ours to end, nor are its descriptors, whose
+/// numbers may be others' by now.
+void ParsingChild::leave_to_parent() {
+  if (running_ && running_->parent != ::getpid()) (void)running_.release();
+}
+
+/// Makes sure of a child: since the last file it may have died, of Ctrl-C at a terminal.
+void ParsingChild::start(const fs::path& file) {
+  leave_to_parent();
+  if (running_ && !running_->child->is_gone()) return;
+  running_ = std::make_unique<Running>(file, parse_);
+}
+
+std::vector<std::byte> ParsingChild::parse(const fs::path& file, const ChildLimits& limits,
+                                           std::string_view request) {
+  start(file);
+  // Until its reply is whole and no error, this child is the last that is known of it.
+  std::unique_ptr<Running> running = std::move(running_);
+  const RequestHeader header{request.size(), limits.memory, limits.seconds};
+  const ReplyReader reader(running->connection.ours(), file, limits);
+  try {
+    // A child that has no room for a request says so, and takes no more of it.
+    const bool sent = reader.send({reinterpret_cast<const char*>(&header), sizeof header}) &&
+                      reader.send(request);
+    std::vector<std::byte> bytes = receive(reader, file, limits);
+    if (!sent) throw EndsEarly();
+    running_ = std::move(running);
+    return bytes;
+  } catch (const EndsEarly&) {
+    throw early_end(running->child->end(), file);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <string_view>
 #include <vector>
 
 namespace geoprior {
@@ -33,5 +35,36 @@ struct ChildLimits {
 ///                was stopped
 std::vector<std::byte> read_in_child(const std::filesystem::path& file, const ChildLimits& limits,
                                      const std::function<std::vector<std::byte>()>& read);
+
+/// Parses one file after another in a child process: what `read_in_child` does, but that the fork,
+/// and what a library does at its first call, is paid once and not for every frame of a sequence
+/// (a fork of 200 MB and VTK's first call: a quarter of a second).
+///
+/// A child that threw an error, ended or was late is not asked again: the next file has a new one,
+/// so that what one file has damaged no other meets. Of one thread at a time.
+class ParsingChild {
+ public:
+  /// Sees its request, and otherwise what this process was when the child began.
+  using Parse = std::vector<std::byte> (*)(std::string_view request);
+
+  explicit ParsingChild(Parse how);
+  ~ParsingChild();
+  ParsingChild(const ParsingChild&) = delete;
+  ParsingChild& operator=(const ParsingChild&) = delete;
+
+  /// @param file     what messages call the file
+  /// @param request  bytes that `Parse` is called with, in the child
+  /// @throws Error   as `read_in_child`
+  std::vector<std::byte> parse(const std::filesystem::path& file, const ChildLimits& limits,
+                               std::string_view request);
+
+ private:
+  struct Running;
+  void start(const std::filesystem::path& file);
+  void leave_to_parent();
+
+  Parse parse_;
+  std::unique_ptr<Running> running_;
+};
 
 }  // namespace geoprior

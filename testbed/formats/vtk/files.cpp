@@ -377,6 +377,20 @@ ChildLimits limits_of(std::size_t bytes) {
   return limits;
 }
 
+/// What a child makes of a request: bytes, extension and name of a file.
+State parsed_reply(std::string_view request) {
+  const auto* begin = reinterpret_cast<const std::byte*>(request.data());
+  const State asked(begin, begin + request.size());
+  StateReader in(asked);
+  const std::string bytes = in.text(), extension = in.text(), where = in.text();
+  const VtkFile file = parse_vtk_file(bytes, extension, where);
+  StateWriter out;
+  out.number(file.notes.size());
+  for (const std::string& note : file.notes) out.text(note);
+  out.bytes(part_to_bytes(file.part, file.parameter));
+  return out.take();
+}
+
 void require_finite(const Part& part, std::optional<double> parameter, const std::string& where) {
   if (parameter && !std::isfinite(*parameter)) throw Error("its TimeValue is not finite", where);
   for (Eigen::Index i = 0; i < part.points.rows(); ++i) {
@@ -421,14 +435,15 @@ Part parse_foreign_vtk_part(const std::string& bytes, const std::string& extensi
 
 VtkFile parse_foreign_vtk_file(const std::string& bytes, const std::string& extension,
                                const std::string& where) {
-  const State reply = read_in_child(where, limits_of(bytes.size()), [&] {
-    const VtkFile file = parse_vtk_file(bytes, extension, where);
-    StateWriter out;
-    out.number(file.notes.size());
-    for (const std::string& note : file.notes) out.text(note);
-    out.bytes(part_to_bytes(file.part, file.parameter));
-    return out.take();
-  });
+  StateWriter request;
+  request.text(bytes);
+  request.text(extension);
+  request.text(where);
+  const State asked = request.take();
+  thread_local ParsingChild child(parsed_reply);
+  const State reply =
+      child.parse(where, limits_of(bytes.size()),
+                  {reinterpret_cast<const char*>(asked.data()), asked.size()});
   StateReader in(reply);
   VtkFile file;
   file.notes.resize(in.count(sizeof(std::size_t)));

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -187,6 +188,116 @@ TEST_F(IsolatedRead, WorksFromSeveralThreads) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+}
+
+Bytes bytes_of(const std::string& text) {
+  Bytes bytes(text.size());
+  std::transform(text.begin(), text.end(), bytes.begin(), [](char c) { return std::byte(c); });
+  return bytes;
+}
+
+/// Does what the request says.
+Bytes obey(std::string_view request) {
+  static int calls = 0;
+  ++calls;
+  if (request == "child") return bytes_of(std::to_string(::getpid()));
+  if (request == "calls") return bytes_of(std::to_string(calls));
+  if (request == "complain") throw Error("is odd", "file.x: line 3", "even numbers");
+  if (request == "crash") std::raise(SIGSEGV);
+  if (request == "throw") throw std::runtime_error("of a library");
+  if (request == "hang") ::pause();
+  if (request == "grow") return Bytes(std::size_t{100} << 30);
+  return bytes_of(std::string(request));
+}
+
+std::string answer(ParsingChild& child, std::string_view request,
+                   const ChildLimits& limits = kSmall) {
+  const Bytes bytes = child.parse("strange.file", limits, request);
+  std::string text;
+  for (const std::byte b : bytes) text += static_cast<char>(b);
+  return text;
+}
+
+std::string error_of_child(ParsingChild& child, std::string_view request,
+                           const ChildLimits& limits = kSmall) {
+  return error_of([&] { (void)child.parse("strange.file", limits, request); });
+}
+
+using ParsingChildTest = IsolatedRead;
+
+TEST_F(ParsingChildTest, OneChildParsesFileAfterFile) {
+  ParsingChild child(obey);
+  const std::string first = answer(child, "child");
+  EXPECT_NE(first, std::to_string(::getpid()));
+  for (const std::size_t size : {0UL, 1UL, 65536UL, 5000001UL}) {
+    const std::string request(size, 'x');
+    EXPECT_EQ(answer(child, request), request);
+  }
+  EXPECT_EQ(answer(child, "child"), first);
+  EXPECT_EQ(answer(child, "calls"), "7");
+}
+
+TEST_F(ParsingChildTest, AfterWhateverWentWrongTheNextFileHasAChildOfItsOwn) {
+  ParsingChild child(obey);
+  const auto crashed = AllOf(HasSubstr("strange.file: is damaged, or made to crash"));
+  const ChildLimits short_time{.memory = kSmall.memory, .seconds = 0.3};
+  const auto fresh = [&] { EXPECT_EQ(answer(child, "calls"), "1"); };
+  fresh();
+  EXPECT_EQ(error_of_child(child, "complain"),
+            Error("is odd", "file.x: line 3", "even numbers").what());
+  fresh();
+  EXPECT_THAT(error_of_child(child, "crash"), crashed);
+  fresh();
+  EXPECT_THAT(error_of_child(child, "throw"), crashed);
+  fresh();
+  EXPECT_THAT(error_of_child(child, "hang", short_time), HasSubstr("hang"));
+  fresh();
+  EXPECT_THAT(error_of_child(child, "grow"), HasSubstr("strange.file: is damaged"));
+  fresh();
+  ChildLimits stopped = kSmall;
+  stopped.stop_requested = [] { return true; };
+  EXPECT_EQ(error_of_child(child, "hang", stopped), "strange.file: was not read: stopped");
+  fresh();
+}
+
+TEST_F(ParsingChildTest, AChildThatDiedInBetweenIsNotMissed) {
+  ParsingChild child(obey);
+  const pid_t first = std::stoi(answer(child, "child"));
+  ASSERT_EQ(::kill(first, SIGKILL), 0);
+  siginfo_t dead{};
+  ASSERT_EQ(::waitid(P_PID, first, &dead, WEXITED | WNOWAIT), 0);
+  EXPECT_NE(answer(child, "child"), std::to_string(first));
+}
+
+TEST_F(ParsingChildTest, LimitsAreThoseOfEachFile) {
+  ParsingChild child(obey);
+  const std::string long_one(std::size_t{20} << 20, 'x');
+  EXPECT_THAT(error_of_child(child, long_one, {.memory = std::size_t{1} << 20, .seconds = 20}),
+              HasSubstr("memory"));
+  const std::string first = answer(child, "child", {.memory = std::size_t{64} << 20});
+  EXPECT_EQ(answer(child, long_one), long_one);
+  EXPECT_EQ(answer(child, "child"), first);
+}
+
+TEST_F(ParsingChildTest, AForkHasAChildOfItsOwn) {
+  ParsingChild child(obey);
+  const std::string ours = answer(child, "child");
+  const Bytes theirs = read_in_child(
+      "f", kSmall, [&] { return child.parse("strange.file", kSmall, "child"); });
+  EXPECT_NE(theirs, bytes_of(ours));
+  EXPECT_EQ(answer(child, "child"), ours);
+}
+
+TEST_F(ParsingChildTest, LeavesNoProcessAndNoDescriptor) {
+  const auto before = open_descriptors();
+  for (int i = 0; i < 10; ++i) {
+    ParsingChild child(obey);
+    (void)answer(child, "calls");
+    (void)error_of_child(child, i % 2 == 0 ? "crash" : "complain");
+    (void)answer(child, "calls");
+  }
+  EXPECT_FALSE(has_children());
+  EXPECT_EQ(open_descriptors(), before);
 }
 
 }  // namespace
