@@ -441,9 +441,8 @@ VtkFile parse_foreign_vtk_file(const std::string& bytes, const std::string& exte
   request.text(where);
   const State asked = request.take();
   thread_local ParsingChild child(parsed_reply);
-  const State reply =
-      child.parse(where, limits_of(bytes.size()),
-                  {reinterpret_cast<const char*>(asked.data()), asked.size()});
+  const State reply = child.parse(where, limits_of(bytes.size()),
+                                  {reinterpret_cast<const char*>(asked.data()), asked.size()});
   StateReader in(reply);
   VtkFile file;
   file.notes.resize(in.count(sizeof(std::size_t)));

@@ -282,8 +282,8 @@ TEST_F(ParsingChildTest, LimitsAreThoseOfEachFile) {
 TEST_F(ParsingChildTest, AForkHasAChildOfItsOwn) {
   ParsingChild child(obey);
   const std::string ours = answer(child, "child");
-  const Bytes theirs = read_in_child(
-      "f", kSmall, [&] { return child.parse("strange.file", kSmall, "child"); });
+  const Bytes theirs =
+      read_in_child("f", kSmall, [&] { return child.parse("strange.file", kSmall, "child"); });
   EXPECT_NE(theirs, bytes_of(ours));
   EXPECT_EQ(answer(child, "child"), ours);
 }
