@@ -18,7 +18,6 @@
 #include <cstring>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -43,7 +42,7 @@ constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
 constexpr bool kAddressSanitizer = false;
 #endif
 
-constexpr int kPipeBytes = 1 << 20;
+constexpr int kBufferBytes = 1 << 20;
 constexpr std::size_t kLongestMessage = 1 << 16;
 
 /// What the child sends before its bytes.
@@ -60,32 +59,6 @@ std::size_t mapped_bytes() {
   return pages * ::sysconf(_SC_PAGESIZE);
 }
 
-/// Both ends of a pipe; what is left open is closed at the end.
-class Pipe {
- public:
-  explicit Pipe(const fs::path& file) {
-    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
-    }
-    (void)::fcntl(ends_[1], F_SETPIPE_SZ, kPipeBytes);  // only makes it faster
-  }
-  ~Pipe() {
-    ::close(ends_[0]);
-    close_writer();
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  [[nodiscard]] int reader() const { return ends_[0]; }
-  [[nodiscard]] int writer() const { return ends_[1]; }
-  void close_writer() {
-    if (ends_[1] >= 0) ::close(std::exchange(ends_[1], -1));
-  }
-
- private:
-  std::array<int, 2> ends_{-1, -1};
-};
-
 /// What a parsing child is sent before a request.
 struct RequestHeader {
   std::uint64_t size = 0;
@@ -93,7 +66,7 @@ struct RequestHeader {
   double seconds = 0;
 };
 
-/// Two ends of a connection that carries bytes both ways, as a pipe otherwise.
+/// Both ends of a connection to a child; what is left open is closed at the end.
 class Connection {
  public:
   explicit Connection(const fs::path& file) {
@@ -101,7 +74,7 @@ class Connection {
       throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
     }
     for (const int end : ends_)  // only makes it faster
-      (void)::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kPipeBytes, sizeof kPipeBytes);
+      (void)::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kBufferBytes, sizeof kBufferBytes);
   }
   ~Connection() {
     ::close(ends_[0]);
@@ -154,10 +127,10 @@ void close_from(unsigned first, unsigned last) {
   for (unsigned i = first; i <= std::min(last, kMost); ++i) ::close(static_cast<int>(i));
 }
 
-/// Keeps the pipe alone: a journal's lock must not outlive our parent, and the buffers of its
-/// streams must not be written twice. Returns the pipe's new descriptor.
-int keep_only(int pipe) {
-  const int kept = ::fcntl(pipe, F_DUPFD_CLOEXEC, 3);
+/// Keeps the connection alone: a journal's lock must not outlive our parent, and the buffers of its
+/// streams must not be written twice. Returns the connection's new descriptor.
+int keep_only(int connection) {
+  const int kept = ::fcntl(connection, F_DUPFD_CLOEXEC, 3);
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   if (kept < 0 || nothing < 0) ::_exit(1);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -196,23 +169,24 @@ void apply(const ChildLimits& limits, std::size_t mapped_before) {
   if (!kAddressSanitizer) set_limit(RLIMIT_AS, mapped_before + limits.memory, false);
 }
 
-void send(int pipe, ReplyHeader::Kind kind, std::string_view bytes) {
+void send(int connection, ReplyHeader::Kind kind, std::string_view bytes) {
   const ReplyHeader header{kind, bytes.size()};
-  write_all(pipe, {reinterpret_cast<const char*>(&header), sizeof header}, "pipe");
-  write_all(pipe, bytes, "pipe");
+  write_all(connection, {reinterpret_cast<const char*>(&header), sizeof header}, "connection");
+  write_all(connection, bytes, "connection");
 }
 
 /// False when there was something wrong.
-bool reply(int pipe, const std::function<std::vector<std::byte>()>& read) {
+bool reply(int connection, const std::function<std::vector<std::byte>()>& read) {
   try {
     const std::vector<std::byte> bytes = read();
-    send(pipe, ReplyHeader::Kind::bytes,
+    send(connection, ReplyHeader::Kind::bytes,
          {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     return true;
   } catch (const Error& e) {
-    send(pipe, ReplyHeader::Kind::error, std::string_view(e.what()).substr(0, kLongestMessage));
+    send(connection, ReplyHeader::Kind::error,
+         std::string_view(e.what()).substr(0, kLongestMessage));
   } catch (const std::bad_alloc&) {
-    send(pipe, ReplyHeader::Kind::out_of_memory, {});
+    send(connection, ReplyHeader::Kind::out_of_memory, {});
   }
   return false;
 }
@@ -244,8 +218,8 @@ bool receive_all(int connection, std::span<std::byte> bytes) {
     while (receive_all(connection, std::as_writable_bytes(std::span(&header, 1)))) {
       apply({.memory = header.memory, .seconds = header.seconds}, mapped_before);
       const bool good = reply(connection, [&] {
-        std::string request(header.size, '\0');
-        if (!receive_all(connection, std::as_writable_bytes(std::span(request)))) ::_exit(0);
+        std::vector<std::byte> request(header.size);
+        if (!receive_all(connection, request)) ::_exit(0);
         return parse(request);
       });
       if (!good) break;
@@ -256,10 +230,10 @@ bool receive_all(int connection, std::span<std::byte> bytes) {
   ::_exit(0);
 }
 
-[[noreturn]] void run_as_child(const Pipe& pipe, pid_t parent, const ChildLimits& limits,
-                               std::size_t mapped_before,
+[[noreturn]] void run_as_child(const Connection& connection, pid_t parent,
+                               const ChildLimits& limits, std::size_t mapped_before,
                                const std::function<std::vector<std::byte>()>& read) {
-  const int kept = begin_child(pipe.writer(), parent);
+  const int kept = begin_child(connection.childs(), parent);
   apply(limits, mapped_before);
   try {
     (void)reply(kept, read);
@@ -302,26 +276,39 @@ class Child {
   pid_t pid_;
 };
 
-/// Thrown by `ReplyReader` when the child closes the pipe before its reply is whole.
+/// Forks with signals blocked; the child does `body`, which does not return.
+template <class Body>
+pid_t forked(const fs::path& file, const Body& body) {
+  const BlockedSignals blocked;
+  const pid_t pid = ::fork();
+  if (pid == 0) body();
+  if (pid < 0) {
+    throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
+  }
+  return pid;
+}
+
+/// Thrown by `ReplyReader` when the child closes the connection before its reply is whole.
 struct EndsEarly {};
 
-/// Bytes of the pipe or connection, as long as there is time and nobody asks to stop.
+/// Bytes from and to a child, as long as there is time and nobody asks to stop.
 class ReplyReader {
  public:
-  ReplyReader(int pipe, const fs::path& file, const ChildLimits& limits)
-      : pipe_(pipe),
+  ReplyReader(int connection, const fs::path& file, const ChildLimits& limits)
+      : connection_(connection),
         file_(file),
         limits_(limits),
         end_(SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
                                       std::chrono::duration<double>(limits.seconds))) {}
 
-  /// To a connection. False when the child takes no more. @throws Error as `fill`
-  [[nodiscard]] bool send(std::string_view bytes) const {
+  /// False when the child takes no more. @throws Error as `fill`
+  [[nodiscard]] bool send(std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
       await(POLLOUT);
-      const ssize_t n = ::send(pipe_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      const ssize_t n =
+          ::send(connection_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
       if (n < 0 && errno != EINTR && errno != EAGAIN) return false;
-      if (n > 0) bytes.remove_prefix(n);
+      if (n > 0) bytes = bytes.subspan(n);
     }
     return true;
   }
@@ -330,7 +317,7 @@ class ReplyReader {
   void fill(std::span<std::byte> bytes) const {
     while (!bytes.empty()) {
       await(POLLIN);
-      const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
+      const ssize_t n = ::read(connection_, bytes.data(), bytes.size());
       if (n == 0 || (n < 0 && errno != EINTR)) throw EndsEarly();
       if (n > 0) bytes = bytes.subspan(n);
     }
@@ -346,7 +333,7 @@ class ReplyReader {
                         std::to_string(std::lround(limits_.seconds)) + " s",
                     file_.string());
       }
-      pollfd ready{pipe_, event, 0};
+      pollfd ready{connection_, event, 0};
       constexpr long long kLongestWait_ms = 100;
       if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left, kLongestWait_ms))) > 0) {
         return;
@@ -357,7 +344,7 @@ class ReplyReader {
     }
   }
 
-  int pipe_;
+  int connection_;
   const fs::path& file_;
   const ChildLimits& limits_;
   SteadyClock::time_point end_;
@@ -398,46 +385,29 @@ std::vector<std::byte> receive(const ReplyReader& reader, const fs::path& file,
 
 std::vector<std::byte> read_in_child(const fs::path& file, const ChildLimits& limits,
                                      const std::function<std::vector<std::byte>()>& read) {
-  Pipe pipe(file);
+  Connection connection(file);
   const std::size_t mapped = mapped_bytes();
   const pid_t parent = ::getpid();
-  pid_t pid = 0;
-  {
-    const BlockedSignals blocked;
-    pid = ::fork();
-    if (pid == 0) run_as_child(pipe, parent, limits, mapped, read);
-  }
-  if (pid < 0) {
-    throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
-  }
-  Child child(pid);
-  pipe.close_writer();
+  Child child(forked(file, [&] { run_as_child(connection, parent, limits, mapped, read); }));
+  connection.close_childs();
   try {
-    return receive(ReplyReader(pipe.reader(), file, limits), file, limits);
+    return receive(ReplyReader(connection.ours(), file, limits), file, limits);
   } catch (const EndsEarly&) {
     throw early_end(child.end(), file);
   }
 }
 
 struct ParsingChild::Running {
-  Running(const fs::path& file, Parse how) : connection(file) {
-    const std::size_t mapped = mapped_bytes();
-    pid_t pid = 0;
-    {
-      const BlockedSignals blocked;
-      pid = ::fork();
-      if (pid == 0) serve(begin_child(connection.childs(), parent), mapped, how);
-    }
-    if (pid < 0) {
-      throw Error("cannot be read in a process of its own: " + system_reason(errno), file.string());
-    }
-    child.emplace(pid);
+  Running(const fs::path& file, Parse how)
+      : connection(file), child(forked(file, [&, mapped = mapped_bytes()] {
+          serve(begin_child(connection.childs(), parent), mapped, how);
+        })) {
     connection.close_childs();
   }
 
   pid_t parent = ::getpid();
   Connection connection;
-  std::optional<Child> child;
+  Child child;
 };
 
 ParsingChild::ParsingChild(Parse how) : parse_(how) {}
@@ -453,12 +423,12 @@ void ParsingChild::leave_to_parent() {
 /// Makes sure of a child: since the last file it may have died, of Ctrl-C at a terminal.
 void ParsingChild::start(const fs::path& file) {
   leave_to_parent();
-  if (running_ && !running_->child->is_gone()) return;
+  if (running_ && !running_->child.is_gone()) return;
   running_ = std::make_unique<Running>(file, parse_);
 }
 
 std::vector<std::byte> ParsingChild::parse(const fs::path& file, const ChildLimits& limits,
-                                           std::string_view request) {
+                                           const std::vector<std::byte>& request) {
   start(file);
   // Until its reply is whole and no error, this child is the last that is known of it.
   std::unique_ptr<Running> running = std::move(running_);
@@ -466,14 +436,13 @@ std::vector<std::byte> ParsingChild::parse(const fs::path& file, const ChildLimi
   const ReplyReader reader(running->connection.ours(), file, limits);
   try {
     // A child that has no room for a request says so, and takes no more of it.
-    const bool sent = reader.send({reinterpret_cast<const char*>(&header), sizeof header}) &&
-                      reader.send(request);
+    const bool sent = reader.send(std::as_bytes(std::span(&header, 1))) && reader.send(request);
     std::vector<std::byte> bytes = receive(reader, file, limits);
     if (!sent) throw EndsEarly();
     running_ = std::move(running);
     return bytes;
   } catch (const EndsEarly&) {
-    throw early_end(running->child->end(), file);
+    throw early_end(running->child.end(), file);
   }
 }
 

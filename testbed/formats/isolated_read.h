@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <string_view>
 #include <vector>
 
 namespace geoprior {
@@ -26,7 +25,8 @@ struct ChildLimits {
 /// statics do not run. It may be called from several threads at once. It is no sandbox: it keeps
 /// accidents away, not a file that takes over the child.
 ///
-/// The cost is that of a fork (15 ms a GB of memory in use) and of a pipe (2 ms a MB at most).
+/// The cost is that of a fork (15 ms a GB of memory in use) and of a connection (2 ms a MB at
+/// most).
 ///
 /// @param file  what messages call the file
 /// @throws Error  what `read` throws, in the same words; for any other end one that names `file`
@@ -45,7 +45,7 @@ std::vector<std::byte> read_in_child(const std::filesystem::path& file, const Ch
 class ParsingChild {
  public:
   /// Sees its request, and otherwise what this process was when the child began.
-  using Parse = std::vector<std::byte> (*)(std::string_view request);
+  using Parse = std::vector<std::byte> (*)(const std::vector<std::byte>& request);
 
   explicit ParsingChild(Parse how);
   ~ParsingChild();
@@ -56,7 +56,7 @@ class ParsingChild {
   /// @param request  bytes that `Parse` is called with, in the child
   /// @throws Error   as `read_in_child`
   std::vector<std::byte> parse(const std::filesystem::path& file, const ChildLimits& limits,
-                               std::string_view request);
+                               const std::vector<std::byte>& request);
 
  private:
   struct Running;

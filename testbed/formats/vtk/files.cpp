@@ -378,10 +378,8 @@ ChildLimits limits_of(std::size_t bytes) {
 }
 
 /// What a child makes of a request: bytes, extension and name of a file.
-State parsed_reply(std::string_view request) {
-  const auto* begin = reinterpret_cast<const std::byte*>(request.data());
-  const State asked(begin, begin + request.size());
-  StateReader in(asked);
+State parsed_reply(const State& request) {
+  StateReader in(request);
   const std::string bytes = in.text(), extension = in.text(), where = in.text();
   const VtkFile file = parse_vtk_file(bytes, extension, where);
   StateWriter out;
@@ -439,10 +437,8 @@ VtkFile parse_foreign_vtk_file(const std::string& bytes, const std::string& exte
   request.text(bytes);
   request.text(extension);
   request.text(where);
-  const State asked = request.take();
   thread_local ParsingChild child(parsed_reply);
-  const State reply = child.parse(where, limits_of(bytes.size()),
-                                  {reinterpret_cast<const char*>(asked.data()), asked.size()});
+  const State reply = child.parse(where, limits_of(bytes.size()), request.take());
   StateReader in(reply);
   VtkFile file;
   file.notes.resize(in.count(sizeof(std::size_t)));

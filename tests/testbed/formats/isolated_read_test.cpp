@@ -196,8 +196,15 @@ Bytes bytes_of(const std::string& text) {
   return bytes;
 }
 
+std::string text_of(const Bytes& bytes) {
+  std::string text;
+  for (const std::byte b : bytes) text += static_cast<char>(b);
+  return text;
+}
+
 /// Does what the request says.
-Bytes obey(std::string_view request) {
+Bytes obey(const Bytes& asked) {
+  const std::string request = text_of(asked);
   static int calls = 0;
   ++calls;
   if (request == "child") return bytes_of(std::to_string(::getpid()));
@@ -207,20 +214,17 @@ Bytes obey(std::string_view request) {
   if (request == "throw") throw std::runtime_error("of a library");
   if (request == "hang") ::pause();
   if (request == "grow") return Bytes(std::size_t{100} << 30);
-  return bytes_of(std::string(request));
+  return asked;
 }
 
-std::string answer(ParsingChild& child, std::string_view request,
+std::string answer(ParsingChild& child, const std::string& request,
                    const ChildLimits& limits = kSmall) {
-  const Bytes bytes = child.parse("strange.file", limits, request);
-  std::string text;
-  for (const std::byte b : bytes) text += static_cast<char>(b);
-  return text;
+  return text_of(child.parse("strange.file", limits, bytes_of(request)));
 }
 
-std::string error_of_child(ParsingChild& child, std::string_view request,
+std::string error_of_child(ParsingChild& child, const std::string& request,
                            const ChildLimits& limits = kSmall) {
-  return error_of([&] { (void)child.parse("strange.file", limits, request); });
+  return error_of([&] { (void)child.parse("strange.file", limits, bytes_of(request)); });
 }
 
 using ParsingChildTest = IsolatedRead;
@@ -282,8 +286,8 @@ TEST_F(ParsingChildTest, LimitsAreThoseOfEachFile) {
 TEST_F(ParsingChildTest, AForkHasAChildOfItsOwn) {
   ParsingChild child(obey);
   const std::string ours = answer(child, "child");
-  const Bytes theirs =
-      read_in_child("f", kSmall, [&] { return child.parse("strange.file", kSmall, "child"); });
+  const Bytes theirs = read_in_child(
+      "f", kSmall, [&] { return child.parse("strange.file", kSmall, bytes_of("child")); });
   EXPECT_NE(theirs, bytes_of(ours));
   EXPECT_EQ(answer(child, "child"), ours);
 }
