@@ -4,16 +4,19 @@
     python3 results/figures.py --check                exit code 1 where a page differs from its source, a citation
                                                       from docs/references.bib, or a finding is written by nothing
     python3 results/figures.py --publish RUN_FOLDER…  first makes the records of these runs anew, and their pictures
+    python3 results/figures.py --prune                first takes out of all records what their files no longer claim
 
 Pages are README.md and docs/**/*.md. A record holds what the pages quote of its run: a new quantity on a page
-needs `--publish` of a run of that experiment.
+needs `--publish` of a run of that experiment. A claim whose sentence is no longer in the experiment file is left out.
 """
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
 import citations
+import claimed
 import findings
 import pages
 import pictures
@@ -39,9 +42,18 @@ def publish(root, run_folders):
     for folder in run_folders:
         run = runfile.read_run(folder)
         quotes = {(variant, quantity) for experiment, variant, quantity in wanted if experiment == run.experiment_id}
-        print(records.write_record(root, records.record_of(run, quotes)))
+        print(records.write_record(root, claimed.standing(records.record_of(run, quotes), root)))
         for path in pictures.publish(run, texts, root):
             print(path)
+
+
+def prune(root):
+    """Takes the claims that were struck from experiment files out of their records; other records stay as they are."""
+    for experiment in records.read_records(root):
+        data = json.loads(records.record_path(root, experiment).read_text(encoding="utf-8"))
+        standing = claimed.standing(data, root)
+        if standing != data:
+            print(records.write_record(root, standing))
 
 
 def unshown(texts, published):
@@ -75,10 +87,13 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="only say what differs")
     parser.add_argument("--publish", nargs="+", default=[], metavar="RUN_FOLDER", help="runs to make records of")
+    parser.add_argument("--prune", action="store_true", help="take struck claims out of the records")
     parser.add_argument("--root", type=Path, default=REPOSITORY, help="the repository (default: this one)")
     chosen = parser.parse_args(arguments)
     if chosen.publish:
         publish(chosen.root, chosen.publish)
+    if chosen.prune:
+        prune(chosen.root)
     return check(chosen.root) if chosen.check else rewrite(chosen.root)
 
 

@@ -21,7 +21,7 @@ from prose import without_code
 from runfile import RunFileError
 from records import Record, read_records
 from summary import claim_list, table, timing_table
-from wording import all_told, outcome_words
+from wording import all_told, clock_words, outcome_words
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
 BLOCK = re.compile(r"^(?P<pad> *)<!-- begin: (?P<source>.*?)\s*-->\n(?P<shown>.*?)^ *<!-- end -->",
@@ -78,14 +78,21 @@ def times_lines(record, case):
     return [*lines[1:], "", f"Processor: {record.processor}."] if lines else []
 
 
-def measured(claims):
+def timed(words, claim, record):
+    """The words; of a time with its interval and the processor that it was taken on."""
+    clock = clock_words(claim)
+    return f"{words}: {clock}, on {record.processor}" if clock else words
+
+
+def measured(claims, record):
     """`0.0384 <= 0.04 (10 of 10 seeds)`, of the first claim that falls short, or the first; and what one and the
     same claim comes to in its cases."""
     shown = next((c for c in claims if not c.holds), claims[0])
     numbers = shown.detail.rpartition(": ")[2]
     seeds = re.match(r"\d+ of \d+ seeds?", shown.detail)
     verdict = outcome_words(claims)
-    return [f"`{numbers}`" + (f" ({seeds[0]})" if seeds else ""), verdict if all_told(claims) else f"**{verdict}**"]
+    return [f"`{numbers}`" + (f" ({seeds[0]})" if seeds else ""),
+            timed(verdict if all_told(claims) else f"**{verdict}**", shown, record)]
 
 
 def headline(record):
@@ -97,7 +104,7 @@ def headline(record):
     short = [text for text, claims in by_text.items() if not all_told(claims)]
     rank = {text: (text not in short, claims[0].null_verdict != "discriminates") for text, claims in by_text.items()}
     chosen = sorted(by_text, key=rank.get)[:max(MOST_HEADLINES, len(short))]
-    rows = [[text, *measured(claims)] for text, claims in by_text.items() if text in chosen]
+    rows = [[text, *measured(claims, record)] for text, claims in by_text.items() if text in chosen]
     return ["", f"*{record.title}.* `{record.command}`: {record.claim_words()}.", "",
             *(table(["claim", "measured", "comes to"], rows) if rows else []), ""]
 
@@ -106,8 +113,11 @@ def caption(record):
     """Title, command and verdict, as they stand below a picture."""
     verdict = record.claim_words()
     for outcome in ("falls short", "not told apart"):
-        missed = list(dict.fromkeys(c.text for c in record.claims if c.outcome == outcome))
-        verdict += f". {outcome.capitalize()}: {'; '.join(missed)}" if missed else ""
+        missed = {}
+        for claim in record.claims:
+            if claim.outcome == outcome:
+                missed.setdefault(claim.text, timed(claim.text, claim, record))
+        verdict += f". {outcome.capitalize()}: {'; '.join(missed.values())}" if missed else ""
     return ["", f"*{record.title}.* `{record.command}`: {verdict}.", ""]
 
 

@@ -1,6 +1,7 @@
 """Pictures of the pages as artefacts of runs: each holds the hash of the run that drew it (PNG text), which is that of
 its experiment's record. A picture belongs to the experiment whose caption (`figure ID`, docs/file-formats.md) is the
-next block below it; a caption that names several files has as many pictures above it, in their order."""
+next block below it; a caption that names several files has as many pictures above it, in their order. Any other
+picture is drawn by hand, and is named here."""
 
 import io
 import re
@@ -19,6 +20,7 @@ KEYWORD = b"geoprior content_sha256"
 MOST_BYTES = 1 << 20  # of a picture as it was drawn; a larger one is reduced to the width that pages show, or less
 WIDTHS = (1200, 900, 600)
 SHOWN = re.compile(r"!\[[^]]*\]\(([^)]+\.png)\)")
+BY_HAND = ("docs/images/sketch-annotate-photo.png", "docs/images/sketch-annotate-views.png")  # drawings with labels
 
 
 def chunks(content, name):
@@ -59,11 +61,20 @@ def stamped(content, name, content_sha256):
     return png_of([header, (b"tEXt", KEYWORD + b"\0" + content_sha256.encode("latin-1")), *rest])
 
 
+def shown_in(text):
+    """(position, target) of each picture of a page."""
+    return [(m.start(), m[1]) for m in SHOWN.finditer(without_code(text))]
+
+
+def place_of(page, target, root):
+    return (root / page).parent.joinpath(target).resolve()
+
+
 def owners(texts, root):
     """path of a picture: (experiment, file of the run that it is) by the captions of all pages."""
     found = {}
     for page, text in texts.items():
-        shown = [(m.start(), m[1]) for m in SHOWN.finditer(without_code(text))]
+        shown = shown_in(text)
         above = 0  # where the block before ends
         for marker in (m for m in pages.markers_of(page, text) if m.block):
             targets = [target for at, target in shown if above <= at < marker.start]
@@ -73,8 +84,16 @@ def owners(texts, root):
                 continue
             experiment, *files = words
             for target, file in zip(targets[::-1], (files or ["figure.png"])[::-1]):
-                found[(root / page).parent.joinpath(target).resolve()] = (experiment, file)
+                found[place_of(page, target, root)] = (experiment, file)
     return found
+
+
+def unowned(texts, owned, root):
+    """One line for every picture of a page that is of no run, and is not drawn by hand."""
+    by_hand = {root / name for name in BY_HAND}
+    return [f"{page}: shows {target}, which is above no caption ('figure ID'), and not one of those drawn by hand"
+            for page, text in texts.items() for _, target in shown_in(text)
+            if place_of(page, target, root) not in owned.keys() | by_hand]
 
 
 def reduced(content):
@@ -111,12 +130,14 @@ def publish(run, texts, root):
 
 
 def problems(texts, published, root):
-    """One line for every picture that is not of the run that its experiment's record is of. Records from before claims
-    were decided in every case were published without pictures."""
-    out, root = [], Path(root).resolve()
-    for path, (experiment, _) in owners(texts, root).items():
+    """One line for every picture that is of no run, or not of the one that its experiment's record is of. Records of
+    the old rule were published without pictures."""
+    root = Path(root).resolve()
+    owned = owners(texts, root)
+    out = unowned(texts, owned, root)
+    for path, (experiment, _) in owned.items():
         record = published.get(experiment)
-        if record is None or not record.every_case:
+        if record is None or record.is_of_old_rule():
             continue
         stamp = stamp_of(read_picture(path), path)
         if stamp != record.content_sha256:

@@ -199,9 +199,14 @@ class Record:
     values: dict
     every_case: bool = True  # its claims are decided in every case; false: in cases that were listed by hand
 
+    def is_of_old_rule(self):
+        """Whether its claims are decided in cases that its author chose: such records are made anew, one by one, and
+        need not yet say what their files claim, nor have pictures that name their run."""
+        return not self.every_case
+
     def claim_words(self):
         """What its claims come to, and whether its author chose the cases."""
-        by_hand = self.claims and not self.every_case
+        by_hand = self.claims and self.is_of_old_rule()
         return outcome_words(self.claims) + (", cases listed by hand" if by_hand else "")
 
     def timing_rows(self, case):

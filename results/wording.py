@@ -45,6 +45,11 @@ def null_words(claim):
     }.get(claim.null_verdict, "")
 
 
+def clock_words(claim):
+    """The margin of a time with its interval; empty for other claims, and for times of runs that kept none."""
+    return claim.null_detail if not claim.null and claim.null_verdict in ("exempt", "undecided") else ""
+
+
 def slack(claim):
     """Value over limit; empty for a limit of 0."""
     if not claim.right or not math.isfinite(claim.left) or not math.isfinite(claim.right):

@@ -1,5 +1,5 @@
 """The numbers of the pages are those of the published records: the committed pages, every marker edited, markers
-that say nothing, and records made from a run. Run with Debian's python3."""
+that say nothing, records made from a run, and their claims against the experiment files. Run with Debian's python3."""
 
 import contextlib
 import html
@@ -10,6 +10,7 @@ import re
 import shutil
 import sys
 import tempfile
+import tomllib
 import unittest
 import zlib
 from pathlib import Path
@@ -21,6 +22,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
 
+import claimed  # noqa: E402
 import expressions  # noqa: E402
 import figures  # noqa: E402
 import pages  # noqa: E402
@@ -28,7 +30,7 @@ import pictures  # noqa: E402
 import published  # noqa: E402
 import records  # noqa: E402
 from report_test import make_run, signed  # noqa: E402
-from runfile import RunFileError  # noqa: E402
+from runfile import Claim, RunFileError  # noqa: E402
 from wording import beside, interval, number, with_unit  # noqa: E402
 
 
@@ -102,6 +104,7 @@ class Scratch(unittest.TestCase):
 
     PAGE = ("# Page\n\nOverlap <!--= test/knee implicit overlap_excess.max in mm³ --><!-- -->.\n\n"
             "<!-- begin: headline test/knee -->\n<!-- end -->\n\n<!-- begin: times test/knee -->\n<!-- end -->\n")
+    FILE = "[[claim]]\ntext = \"contact goes\"\n\n[[claim]]\ntext = \"bulge stays\"\n"
 
     def setUp(self):
         self.root = Path(tempfile.mkdtemp())
@@ -110,6 +113,9 @@ class Scratch(unittest.TestCase):
         (self.root / "docs/references.bib").touch()
         self.page = self.root / "docs" / "page.md"
         self.page.write_text(self.PAGE, encoding="utf-8")
+        (self.root / "experiments/test").mkdir(parents=True)
+        self.file = self.root / "experiments/test/knee.toml"
+        self.file.write_text(self.FILE, encoding="utf-8")
         self.run = self.root / "run"
         self.run.mkdir()
         make_run(self.run)
@@ -152,6 +158,22 @@ class Publishing(Scratch):
         self.publish()
         self.assertEqual(path.read_bytes(), first)
 
+    def test_a_struck_claim_is_not_published(self):
+        self.file.write_text("[[claim]]\ntext = \"bulge stays\"\n", encoding="utf-8")
+        self.assertEqual(self.publish()[0], 0)
+        record = records.read_records(self.root)["test/knee"]
+        self.assertEqual([claim.text for claim in record.claims], ["bulge stays"])
+
+    def test_without_an_experiment_file_is_an_error(self):
+        self.file.write_text("[[claim]\n", encoding="utf-8")
+        with self.assertRaisesRegex(RunFileError, "knee.toml: is no experiment file"):
+            self.publish()
+        self.file.unlink()
+        with self.assertRaisesRegex(RunFileError, "knee.toml: no such file, and no experiment file has the id"):
+            self.publish()
+        self.file.with_name("other.toml").write_text(f"id = \"test/knee\"\n{self.FILE}", encoding="utf-8")
+        self.assertEqual(self.publish()[0], 0)
+
     def test_quick_runs_are_refused(self):
         with signed(self.run, "a") as file:
             file.attrs["quick"] = 1
@@ -169,6 +191,23 @@ class Publishing(Scratch):
         for quantity in ("timing:relax.mean", "timing:solve.mode", "overlap_excess", "overlap_excess@44",
                          "overlap_excess.mode", "nothing.max"):
             self.assertIsNone(records.measured(implicit, quantity), quantity)
+
+
+class Pruning(Scratch):
+    def test_takes_a_struck_claim_out_and_changes_nothing_else(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        before = path.read_text(encoding="utf-8").splitlines()
+        self.file.write_text("[[claim]]\ntext = \"bulge stays\"\n", encoding="utf-8")
+        code, out, _ = run_figures("--root", self.root, "--prune")
+        self.assertEqual((code, out), (0, f"{path}\ndocs/page.md\n"))
+        self.assertEqual(path.read_text(encoding="utf-8").splitlines(), [x for x in before if "contact goes" not in x])
+        self.assertEqual(run_figures("--root", self.root, "--prune", "--check"), (0, "", ""))
+
+    def test_leaves_the_committed_records_as_they_are_but_for_struck_claims(self):
+        for path in records.published_folder(REPOSITORY).glob("*/*.json"):
+            text = path.read_text(encoding="utf-8")
+            self.assertEqual(records.json_text(json.loads(text)) + "\n", text, path)
 
 
 class Checking(Scratch):
@@ -258,6 +297,18 @@ class Headlines(Scratch):
                                        "| claim 6 | `6 <= 5 m` | **falls short** |",
                                        "| claim 7 | `9 <= 5` (9 of 10 seeds) | **holds in 1, falls short in 1** |"])
 
+    def test_show_times_with_their_interval_and_processor(self):
+        self.publish()
+        path = records.record_path(self.root, "test/knee")
+        data = json.loads(path.read_text(encoding="utf-8"))
+        data["claims"] = [{"holds": False, "case": "a", "text": "fast", "detail": "timing:run of x (median): 7 <= 5 s",
+                           "null_verdict": "exempt", "null_detail": "margin -2 s, 95 % interval [-3, -1] s"}]
+        path.write_text(json.dumps(data), encoding="utf-8")
+        record = records.read_record(path)
+        words = "margin -2 s, 95 % interval [-3, -1] s, on A CPU"
+        self.assertIn(f"| fast | `7 <= 5 s` | **falls short**: {words} |", pages.headline(record))
+        self.assertIn(f"Falls short: fast: {words}.", pages.caption(record)[1])
+
     def test_never_say_that_all_hold_where_a_null_passes_or_cases_were_chosen(self):
         self.publish()
         path = records.record_path(self.root, "test/knee")
@@ -346,12 +397,157 @@ class Pictures(Scratch):
             with self.assertRaisesRegex(RunFileError, f"knee.png: {message}"):
                 run_figures("--root", self.root, "--check")
 
+    def test_of_no_run_are_named_but_for_those_drawn_by_hand(self):
+        (self.root / "docs/other.md").write_text(
+            "".join(f"![drawn](../{name})\n" for name in (*pictures.BY_HAND, "docs/odd.png")), encoding="utf-8")
+        self.assertEqual(self.problem(), "docs/other.md: shows ../docs/odd.png, which is above no caption ('figure ID'), "
+                                         "and not one of those drawn by hand\n")
+
     def test_of_records_from_before_need_no_hash(self):
         self.picture.write_bytes(self.ONE_PIXEL)
         data = json.loads(self.record.read_text(encoding="utf-8"))
         self.record.write_text(json.dumps(data | {"every_case": False}), encoding="utf-8")
         run_figures("--root", self.root)
         self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
+
+
+def records_held_to_their_files(root):
+    """All published records but those of the old rule, which are being made anew. When the last one is, the condition
+    goes, and `Record.is_of_old_rule` with it."""
+    return [record for record in records.read_records(root).values() if not record.is_of_old_rule()]
+
+
+class CommittedClaims(unittest.TestCase):
+    maxDiff = None
+
+    def test_of_records_are_those_of_their_files(self):
+        self.assertEqual([], [line for record in records_held_to_their_files(REPOSITORY) for line in claimed.mismatches(
+            record, claimed.read_spec(REPOSITORY, record.experiment_id))])
+
+    def test_of_two_records_have_no_number_in_common(self):
+        self.assertEqual(claimed.shared_numbers(records.read_records(REPOSITORY)), [])
+
+
+class MutatedClaims(unittest.TestCase):
+    """In a copy of files and records, what one says otherwise than the other is named."""
+
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        shutil.copytree(REPOSITORY / "results/published", self.root / "results/published")
+        shutil.copytree(REPOSITORY / "experiments", self.root / "experiments",
+                        ignore=lambda folder, names: [n for n in names if Path(n).suffix not in ("", ".toml")])
+        self.records = records_held_to_their_files(self.root)
+
+    def mismatches(self, record):
+        return claimed.mismatches(record, claimed.read_spec(self.root, record.experiment_id))
+
+    def require_named(self, mutate):
+        """Every claim of every file, which `mutate(block, claim, record)` makes another TOML text of, with what is to
+        be named then; None: the claim is left as it is."""
+        count = 0
+        for record in self.records:
+            path = claimed.file_of(self.root, record.experiment_id)
+            whole, known = path.read_text(encoding="utf-8"), claimed.mismatches(record, claimed.parsed(path))
+            for block in re.findall(r"^\[\[claim\]\]\n(?:(?!\[).*\n?)*", whole, re.MULTILINE):
+                made = mutate(block, tomllib.loads(block)["claim"][0], record)
+                if made is None:
+                    continue
+                path.write_text(whole.replace(block, made[0]), encoding="utf-8")
+                found = claimed.mismatches(record, claimed.parsed(path))
+                self.assertIn(f"{record.experiment_id}: {made[1]}", set(found) - set(known))
+                count += 1
+            path.write_text(whole, encoding="utf-8")
+        self.assertGreater(count, 20)
+
+    def test_a_struck_sentence_is_named(self):
+        self.require_named(lambda block, claim, record: None if not decided(record, claim) else (
+            "", f"'{claim['text']}' is claimed by the record only"))
+
+    def test_an_added_sentence_is_named(self):
+        added = "[[claim]]\ntext = \"added\"\nmetric = \"timing:run\"\n"
+        self.require_named(lambda block, claim, record: (block + added, "'added' is claimed by the file only"))
+
+    def test_a_swapped_null_is_named(self):
+        def swapped(block, claim, record):
+            if "null" not in claim or not decided(record, claim):
+                return None
+            text = re.sub(r"^null( *)=.*$", "null = \"nobody\"", block, flags=re.MULTILINE)
+            return text, f"'{claim['text']}' names the null '{claim['null']}', the file 'nobody'"
+        self.require_named(swapped)
+
+    def test_an_added_exception_is_named(self):
+        def excepted(block, claim, record):
+            cases = [published.case for published in decided(record, claim)]
+            if "except" in claim or not any(cases):
+                return None
+            text = f"{block.rstrip()}\nexcept = [{{ cases = [\"{cases[-1]}\"], reason = \"planted\" }}]\n\n"
+            return text, f"'{claim['text']}' is excepted in case '{cases[-1]}' because '', in the file because 'planted'"
+        self.require_named(excepted)
+
+    def test_an_exception_of_a_case_that_is_not_decided_is_named(self):
+        def excepted(block, claim, record):
+            if "except" in claim or not decided(record, claim):
+                return None
+            text = f"{block.rstrip()}\nexcept = [{{ cases = [\"nowhere\"], reason = \"planted\" }}]\n\n"
+            return text, (f"'{claim['text']}' is excepted by the file in case 'nowhere', in which the record does not "
+                          "decide it")
+        self.require_named(excepted)
+
+    def test_a_dropped_case_is_named(self):
+        for record in self.records:
+            claims = claimed.read_spec(self.root, record.experiment_id).get("claim", [])
+            case = record.cases.pop()
+            found = self.mismatches(record)
+            self.assertIn(f"{record.experiment_id}: case '{case}' is swept by the file only", found)
+            for claim in claims:
+                if case in [published.case for published in decided(record, claim)]:
+                    self.assertIn(f"{record.experiment_id}: '{claim['text']}' is claimed in case '{case}', which is none "
+                                  "of the record", found)
+
+    def test_a_case_too_many_is_named(self):
+        record = self.records[0]
+        record.cases.append("seed=99")
+        self.assertIn(f"{record.experiment_id}: case 'seed=99' is swept by the record only", self.mismatches(record))
+
+
+def decided(record, claim):
+    return [published for published in record.claims if published.text == claim["text"]]
+
+
+class Claims(unittest.TestCase):
+    def test_of_sweeps_are_in_cases_named_as_the_runner_names_them(self):
+        spec = tomllib.loads("""
+            sweep = [{ key = "scene.size", values = [1e-5, 0.0001, 0.25, 2.0] },
+                     { key = "variant.a.options.on", values = [true] }, { key = "variant.b.options.on", values = [true] },
+                     { key = "scene.path", values = ["run:a/b", [1, 2]] },
+                     { key = "scene", values = [{}], names = ["a b"] },
+                     { key = "threads", grid = true, values = [1, 2] },
+                     { key = "seed", grid = true, claims_only = true, values = [3], base = false }]""")
+        cases = claimed.cases_of(spec)
+        self.assertEqual(list(cases), [
+            "size=1e-05", "size=1e-04", "size=0.25", "size=2", "variant.a.options.on=true", "variant.b.options.on=true",
+            "path=run-a-b", "path=1-2", "a-b", "threads=1,seed=3", "threads=2,seed=3"])
+        self.assertEqual([name for name, case in cases.items() if case.claims_only], list(cases)[-2:])
+        self.assertEqual(list(claimed.cases_of({})), ["default"])
+
+    def test_with_a_number_of_another_record_are_named(self):
+        def of(experiment, *claims):
+            values = [Claim(f"says {d}", "default", d, left, 1.0, True, variant=v) for d, left, v in claims]
+            return type("Record", (), {"experiment_id": experiment, "claims": values})
+        first = of("a/a", ("9 of 10 seeds; worst: bulge of implicit (max): 0.0383 <= 0.04", 0.0383121, "implicit"),
+                   ("study:rate of it: 1.5 <= 2", 1.5, ""), ("lost of implicit (max): 0 <= 0", 0.0, "implicit"))
+        for number, shared in ((("bulge of implicit (at 90): 0.0383 <= 0.05", 0.0383121, ""),
+                                "bulge of implicit: 0.0383121"),
+                               (("study:rate of it: 1.5 >= 1", 1.5, ""), "study:rate of it: 1.5"),
+                               (("bulge of implicit: 0.0383 <= 0.05", 0.0383122, ""), None),
+                               (("bulge of linear: 0.0383 <= 0.05", 0.0383121, "linear"), None),
+                               (("lost of implicit (max): 0 <= 1", 0.0, "implicit"), None)):
+            found = claimed.shared_numbers({"a/a": first, "b/b": of("b/b", number)})
+            if shared is None:
+                self.assertEqual(found, [])
+            else:
+                self.assertRegex(found[0], f"^{shared} is claimed by a/a .* and by b/b ")
 
 
 class Markers(Scratch):
