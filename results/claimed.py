@@ -13,6 +13,7 @@ from runfile import RunFileError
 
 NO_CHARACTER_OF_A_NAME = re.compile(r"[^\w.+=,-]", re.ASCII)
 OVER_SEEDS = re.compile(r"^\d+ of \d+ seeds?; worst: ")
+AGAINST = re.compile(r" against [\w-]+")  # a claim about two variants
 MEASURED = re.compile(r"(?P<metric>study:.+(?=: )|\S+)(?: of (?P<variant>[\w-]+))?")  # how the detail of a claim begins
 
 
@@ -178,15 +179,17 @@ def mismatches(record, spec):
 
 
 def measured(claim):
-    """(what is measured, value) of a claim: `bulge of implicit`, or a study."""
-    begins = MEASURED.match(OVER_SEEDS.sub("", claim.detail))
+    """(what is measured, value) of a claim: `bulge of implicit`, `bulge of implicit against union`, or a study."""
+    detail = OVER_SEEDS.sub("", claim.detail)
+    begins, against = MEASURED.match(detail), AGAINST.search(detail.partition(": ")[0])
     variant = claim.variant or begins["variant"]
-    return begins["metric"] + (f" of {variant}" if variant else ""), claim.left
+    what = begins["metric"] + (f" of {variant}" if variant else "") + (against[0] if against else "")
+    return what, claim.left
 
 
 def shared_numbers(published):
     """One line for each number that claims of several records have, to all digits: it was measured once. Whole numbers
-    are counts, which may be equal."""
+    are counts, which may be equal; held against two variants a number says two things."""
     owners = {}
     for record in published.values():
         for claim in record.claims:

@@ -542,6 +542,7 @@ class Claims(unittest.TestCase):
                                (("study:rate of it: 1.5 >= 1", 1.5, ""), "study:rate of it: 1.5"),
                                (("bulge of implicit: 0.0383 <= 0.05", 0.0383122, ""), None),
                                (("bulge of linear: 0.0383 <= 0.05", 0.0383121, "linear"), None),
+                               (("bulge of implicit against linear: 0.0383 <= 0.5 * 0.1", 0.0383121, ""), None),
                                (("lost of implicit (max): 0 <= 1", 0.0, "implicit"), None)):
             found = claimed.shared_numbers({"a/a": first, "b/b": of("b/b", number)})
             if shared is None:
