@@ -120,7 +120,7 @@ void ask_others(const ClaimSpec& claim, const CaseRecord& in, Decision& decision
       if (!judgement.holds() && judgement.worst().margin > least) {
         least = judgement.worst().margin;
         decision.record.nearest = other.name;
-      } else if (judgement.holds() && !named && !is_null_control(other.role)) {
+      } else if (judgement.holds() && !named) {
         decision.passed_too.push_back(other.name);
       }
     } catch (const Error&) {  // has no value: it does not pass

@@ -220,7 +220,8 @@ class Grader::Impl {
     return judge_study(claim, make_studies(one, changed)).holds();
   }
 
-  /// Whether the metric follows the frames: of those of the input it is that of the input.
+  /// Whether the metric follows the frames: of those of the input it is that of the input, which
+  /// has none where it is what the others are compared with.
   bool frames_tell(const Sides& sides) {
     const MetricEntry* metric = find_metric(topic_, sides.claim->metric);
     if (metric == nullptr) return false;
@@ -229,12 +230,17 @@ class Grader::Impl {
     const auto value = [&](const VariantRecord& of) {
       return quantity_of(*sides.in, of, claim.metric, claim.at_parameter, reduce).value;
     };
+    const auto follows = [&](int step, const VariantRecord& of) {
+      const double recorded = value(of);
+      return std::abs(value(measured(sides, step)) - recorded) <=
+             metric->tolerance.of(recorded) + kRoundOff * std::abs(recorded);
+    };
     try {
-      const double input = value(*sides.input);
-      const double allowed = metric->tolerance.of(input) + kRoundOff * std::abs(input);
-      return std::abs(value(measured(sides, 0)) - input) <= allowed &&
-             std::abs(value(measured(sides, kGradeSteps)) - value(*sides.output)) <=
-                 metric->tolerance.of(value(*sides.output)) + kRoundOff * std::abs(input);
+      const bool compared_with = group_of(topic_, *metric).needs_reference &&
+                                 sides.input->reference.empty() &&
+                                 reference_of(*sides.in, *sides.output) == sides.input;
+      return (compared_with ? !std::isnan(value(measured(sides, 0))) : follows(0, *sides.input)) &&
+             follows(kGradeSteps, *sides.output);
     } catch (const Error&) {
       return false;
     }

@@ -62,10 +62,10 @@ TEST(BlendedFrame, LeavesWhatTheInputHasNotOrInAnotherTopology) {
 /// A disc whose points are all at 1.1 radii, and one at 0.8 radii as the input.
 class Grades : public RunTest {
  protected:
-  Experiment discs(const std::string& claims) {
-    return load(write_experiment("toy-circle/discs", R"(title = "discs"
+  Experiment discs(const std::string& claims, const std::string& input = "small") {
+    return load(write_experiment("toy-circle/discs", "input = \"" + input + R"("
+title = "discs"
 topic = "toy-circle"
-input = "small"
 [scene]
 points = 24
 motion = { from_deg = 0, to_deg = 90, frames = 4 }
@@ -122,6 +122,17 @@ TEST_F(Grades, NeedAValueOfTheInput) {
   EXPECT_EQ(claims.at(0).grade.of, Graded::not_graded);
   EXPECT_TRUE(std::isnan(claims[0].grade.least));
   EXPECT_FALSE(is_soft(claims[0]));
+}
+
+// The points are at 1 + 0.1 s radii: 0.08 and more away from the input from s = 0.8 on.
+TEST_F(Grades, AreLookedForInFramesWhereTheInputIsWhatOthersAreComparedWith) {
+  const auto claims =
+      graded(discs("[[claim]]\ntext = \"far\"\nmetric = \"distance_to_reference\"\n"
+                   "variant = \"large\"\nis = \">=\"\nvalue = 0.08\nreduce = \"min\"\n",
+                   "exact"));
+  EXPECT_EQ(claims.at(0).grade.of, Graded::frames);
+  EXPECT_NEAR(claims[0].grade.least, 0.8, 0.051);
+  EXPECT_EQ(claims[0].grade.input, "exact");
 }
 
 TEST_F(Grades, AClaimThatItsInputPassesIsGradedZero) {
