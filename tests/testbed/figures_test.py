@@ -424,6 +424,14 @@ class CommittedClaims(unittest.TestCase):
         self.assertEqual([], [line for record in records_held_to_their_files(REPOSITORY) for line in claimed.mismatches(
             record, claimed.read_spec(REPOSITORY, record.experiment_id))])
 
+    def test_of_records_are_soft_in_one_sentence_of_ten_at_most(self):
+        soft = {}
+        for record in records_held_to_their_files(REPOSITORY):
+            for claim in record.claims:
+                sentence = (record.experiment_id, claim.text)
+                soft[sentence] = soft.get(sentence, False) or (claim.outcome == "holds" and claim.soft)
+        self.assertLessEqual(sum(soft.values()), 0.1 * len(soft), [sentence for sentence in soft if soft[sentence]])
+
     def test_of_two_records_have_no_number_in_common(self):
         self.assertEqual(claimed.shared_numbers(records.read_records(REPOSITORY)), [])
 
