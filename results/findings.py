@@ -1,7 +1,7 @@
 """Numbers in what pages say was found: each is written from its source, by a marker (docs/file-formats.md).
 
 In the sections `What was found` and `Results` of all pages a digit stands in a marker or a generated block, in code
-(a command, a name, an option), or in the number of a figure, a section or an equation, in a citation, or in a name
+that is more than a number (a command, a name, an option), or in the number of a figure, a section or an equation, in a citation, or in a name
 such as A4. Any other is bare: nothing notices when it is no longer true.
 """
 
@@ -16,8 +16,9 @@ HEADING = re.compile(r"^(?P<level>#+) ", re.MULTILINE)
 REFERENCE = (r"\b(?:[Ff]ig(?:ure|s?\.|ures)|[Tt]hesis|[Ss]ections?|[Ee]q(?:uation|s?\.|uations)|[Cc]hapter|[Tt]ables?)"
              r"[\s(]+\d[\d.]*(?:(?:,| and| to|–) \d[\d.]*)*")
 NAMED = r"\b[A-Za-z_][\w^]*\d\w*"  # A4, L2, x0: names that have a digit
+CODE = r"`(?!\W*\d[\d.,]*(?:e[+-]?\d+)?[ %]?[^\W\d]{0,4}`)[^`\n]*`"  # but for a number, with a unit perhaps
 NO_NUMBERS = [re.compile(pattern, flags) for pattern, flags in (
-    (r"<!--.*?-->", re.DOTALL), (r"`[^`\n]*`", 0), (r"\]\([^)\n]*\)", 0), (r"https?://\S+", 0), (REFERENCE, 0),
+    (r"<!--.*?-->", re.DOTALL), (CODE, 0), (r"\]\([^)\n]*\)", 0), (r"https?://\S+", 0), (REFERENCE, 0),
     (NAMED, 0))]
 TEMPLATE = re.compile(r"^ *<!-- begin: table\n[^\n]*\n(?P<rows>.*?)-->", re.DOTALL | re.MULTILINE)  # below its head
 FIRST_CELL = re.compile(r"^\|[^|\n]*", re.MULTILINE)

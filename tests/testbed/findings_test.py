@@ -44,6 +44,7 @@ class Findings(unittest.TestCase):
     def test_without_bare_numbers(self):
         for finding in ("Twice as far (thesis 3.2.1, fig. 2.23, figures 3.4 and 3.5, equation (2.1)).",
                         "`geoprior run paper/bend --set seed=3`, `dense-32`, an A4 sheet, L2.",
+                        "`20k,threads=2`, `./test.sh --long 3`, `2 F cos(θ/2) / e`, `[1, 2]`.",
                         "Much <!--= paper/bend hybrid isometry_rms.max -->1.3 %<!-- --> less (Clauset et al. 2009).",
                         "<!-- begin: claims paper/bend -->\n12 of 13\n<!-- end -->",
                         "<!-- begin: table\n| K3 | at 90 |\n| 3, all | {paper/bend hybrid x.max to 2} |\n-->\n12\n<!-- end -->",
@@ -53,6 +54,7 @@ class Findings(unittest.TestCase):
     def test_with_bare_numbers(self):
         for finding, numbers in (("It is 3.5 times, of 12,345, better.", ["3.5", "12,345"]),
                                  ("| a | b |\n|---|---|\n| x | 0.3 |", ["0.3"]), ("at 45°, 30% and ×9", ["45", "30", "9"]),
+                                 ("`3.5` times, `12 mm`, `0.3 %`, `-1e-5` and `≤ 7`", ["3.5", "12", "0.3", "1", "5", "7"]),
                                  ("<!-- begin: table\n| a | b |\n| c | 12 |\n-->\n<!-- end -->", ["12"]),
                                  ("### Below\n\n7 of 8\n\n## Limits\n\n9", ["7", "8"])):
             self.assertEqual(bare(finding), numbers, finding)
