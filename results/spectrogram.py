@@ -52,13 +52,13 @@ def read_sound(run, variant):
 
 
 def kinds_of(variants):
-    """Kinds of events, the most frequent first."""
+    """The most frequent kinds of events, by name: where two pictures have the same kinds, these have the same colours."""
     counts = {}
     for variant in variants:
         for event in variant.events:
             kind = runfile.text(event["kind"])
             counts[kind] = counts.get(kind, 0) + 1
-    return sorted(counts, key=lambda k: (-counts[k], k))[:MOST_KINDS]
+    return sorted(sorted(counts, key=lambda k: (-counts[k], k))[:MOST_KINDS])
 
 
 class Block:
