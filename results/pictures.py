@@ -130,14 +130,13 @@ def publish(run, texts, root):
 
 
 def problems(texts, published, root):
-    """One line for every picture that is of no run, or not of the one that its experiment's record is of. Records of
-    the old rule were published without pictures."""
+    """One line for every picture that is of no run, or not of the one that its experiment's record is of."""
     root = Path(root).resolve()
     owned = owners(texts, root)
     out = unowned(texts, owned, root)
     for path, (experiment, _) in owned.items():
         record = published.get(experiment)
-        if record is None or record.is_of_old_rule():
+        if record is None:
             continue
         stamp = stamp_of(read_picture(path), path)
         if stamp != record.content_sha256:

@@ -122,6 +122,9 @@ def record_of(run, quoted):
     """What the run publishes, as the JSON object that its file holds."""
     if run.quick:
         raise RunFileError(f"{run.folder}: a quick run is not published")
+    if run.schema_version < SINCE_EVERY_CASE:
+        raise RunFileError(f"{run.folder}: its claims were decided in cases that were listed by hand "
+                           f"(schema {run.schema_version}; published from {SINCE_EVERY_CASE} on): run it anew")
     values, units = quoted_values(run, quoted)
     return {
         "schema_version": SCHEMA_VERSION, "experiment": run.experiment_id, "title": run.title,
@@ -129,7 +132,7 @@ def record_of(run, quoted):
         "commit": run.provenance.get("git_commit", "unknown"), "content_sha256": run.content_sha256,
         "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
         "failures": tables.failures(run), "cases": [case.name for case in run.cases],
-        "every_case": run.schema_version >= SINCE_EVERY_CASE, "claims": [published_claim(c) for c in run.claims],
+        "claims": [published_claim(c) for c in run.claims],
         "studies": {s.name: {"kind": s.kind, "quantity": s.quantity, "value": rounded(s.value, 4),
                              "low": rounded(s.low, 4), "high": rounded(s.high, 4)} for s in run.studies},
         "times": {case.name: times_of_case(case) for case in run.cases},
@@ -197,17 +200,10 @@ class Record:
     ratios: dict
     units: dict[str, str]
     values: dict
-    every_case: bool = True  # its claims are decided in every case; false: in cases that were listed by hand
-
-    def is_of_old_rule(self):
-        """Whether its claims are decided in cases that its author chose: such records are made anew, one by one, and
-        need not yet say what their files claim, nor have pictures that name their run."""
-        return not self.every_case
 
     def claim_words(self):
-        """What its claims come to, and whether its author chose the cases."""
-        by_hand = self.claims and self.is_of_old_rule()
-        return outcome_words(self.claims) + (", cases listed by hand" if by_hand else "")
+        """What its claims come to."""
+        return outcome_words(self.claims)
 
     def timing_rows(self, case):
         """The rows of the timing table of a case, as `tables.timing_rows` gives them of a run."""
@@ -235,7 +231,7 @@ def read_record(path):
                                            "ratios", "units", "values")}
         empty = np.array([])
         return Record(
-            experiment_id=data["experiment"], every_case=data.get("every_case", False), **same,
+            experiment_id=data["experiment"], **same,
             claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
                            empty, empty, empty) for name, s in data["studies"].items()])

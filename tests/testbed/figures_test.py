@@ -121,6 +121,7 @@ class Scratch(unittest.TestCase):
         make_run(self.run)
         with signed(self.run, "a") as file:
             file.attrs["quick"] = 0
+            file.attrs["schema_version"] = records.SINCE_EVERY_CASE
 
     def publish(self):
         return run_figures("--root", self.root, "--publish", self.run)
@@ -292,7 +293,7 @@ class Headlines(Scratch):
         data["claims"] += [{"holds": False, "case": "other", "text": "claim 7", "detail": "9 of 10 seeds; worst: x: 9 <= 5"}]
         path.write_text(json.dumps(data), encoding="utf-8")
         lines = pages.headline(records.read_record(path))
-        self.assertIn("holds in 7, falls short in 2, cases listed by hand.", lines[1])
+        self.assertIn("holds in 7, falls short in 2.", lines[1])
         self.assertEqual(lines[5:-1], ["| claim 2 | `2 <= 5 m` | holds |", "| claim 3 | `3 <= 5 m` | holds |",
                                        "| claim 6 | `6 <= 5 m` | **falls short** |",
                                        "| claim 7 | `9 <= 5` (9 of 10 seeds) | **holds in 1, falls short in 1** |"])
@@ -309,7 +310,7 @@ class Headlines(Scratch):
         self.assertIn(f"| fast | `7 <= 5 s` | **falls short**: {words} |", pages.headline(record))
         self.assertIn(f"Falls short: fast: {words}.", pages.caption(record)[1])
 
-    def test_never_say_that_all_hold_where_a_null_passes_or_cases_were_chosen(self):
+    def test_never_say_that_all_hold_where_a_null_passes(self):
         self.publish()
         path = records.record_path(self.root, "test/knee")
         data = json.loads(path.read_text(encoding="utf-8"))
@@ -318,7 +319,6 @@ class Headlines(Scratch):
         data["claims"] = [claim, claim | {"case": "b", "null_verdict": "void"},
                           claim | {"case": "c", "holds": False, "excepted": "too coarse"},
                           claim | {"case": "d", "least": 0.55}]
-        data["every_case"] = True
         path.write_text(json.dumps(data), encoding="utf-8")
         record = records.read_record(path)
         words = "holds in 2, falls short in 1 (1 excepted), not told apart in 1; 1 soft"
@@ -326,9 +326,6 @@ class Headlines(Scratch):
         text = "\n".join(pages.claim_list(record))
         self.assertIn("excepted: too coarse", text)
         self.assertIn("soft: holds from s = 0.55 on of nothing + s (its variant − nothing), graded by frames", text)
-        data["every_case"] = False
-        path.write_text(json.dumps(data), encoding="utf-8")
-        self.assertEqual(records.read_record(path).claim_words(), words + ", cases listed by hand")
 
 
 class Pictures(Scratch):
@@ -344,8 +341,6 @@ class Pictures(Scratch):
         self.picture = self.root / "docs" / "knee.png"
         self.publish()
         self.record = records.record_path(self.root, "test/knee")
-        data = json.loads(self.record.read_text(encoding="utf-8"))
-        self.record.write_text(json.dumps(data | {"every_case": True}), encoding="utf-8")
         run_figures("--root", self.root)
 
     def problem(self):
@@ -361,6 +356,12 @@ class Pictures(Scratch):
         again = pictures.stamped(content, "knee.png", data["content_sha256"])
         self.assertEqual(again, content, "a second stamp takes the place of the first")
         self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
+
+    def test_of_runs_of_cases_listed_by_hand_are_refused(self):
+        with signed(self.run, "a") as file:
+            file.attrs["schema_version"] = records.SINCE_EVERY_CASE - 1
+        with self.assertRaisesRegex(RunFileError, "listed by hand"):
+            self.publish()
 
     def test_several_above_one_caption_belong_to_it_in_their_order(self):
         text = ("![a](a.png)\n\n![b](b.png)\n\n![c](c.png)\n\n<!-- begin: figure test/knee one.png two.png -->\n"
@@ -403,30 +404,17 @@ class Pictures(Scratch):
         self.assertEqual(self.problem(), "docs/other.md: shows ../docs/odd.png, which is above no caption ('figure ID'), "
                                          "and not one of those drawn by hand\n")
 
-    def test_of_records_from_before_need_no_hash(self):
-        self.picture.write_bytes(self.ONE_PIXEL)
-        data = json.loads(self.record.read_text(encoding="utf-8"))
-        self.record.write_text(json.dumps(data | {"every_case": False}), encoding="utf-8")
-        run_figures("--root", self.root)
-        self.assertEqual(run_figures("--root", self.root, "--check")[0], 0)
-
-
-def records_held_to_their_files(root):
-    """All published records but those of the old rule, which are being made anew. When the last one is, the condition
-    goes, and `Record.is_of_old_rule` with it."""
-    return [record for record in records.read_records(root).values() if not record.is_of_old_rule()]
-
 
 class CommittedClaims(unittest.TestCase):
     maxDiff = None
 
     def test_of_records_are_those_of_their_files(self):
-        self.assertEqual([], [line for record in records_held_to_their_files(REPOSITORY) for line in claimed.mismatches(
+        self.assertEqual([], [line for record in records.read_records(REPOSITORY).values() for line in claimed.mismatches(
             record, claimed.read_spec(REPOSITORY, record.experiment_id))])
 
     def test_of_records_are_soft_in_one_sentence_of_ten_at_most(self):
         soft = {}
-        for record in records_held_to_their_files(REPOSITORY):
+        for record in records.read_records(REPOSITORY).values():
             for claim in record.claims:
                 sentence = (record.experiment_id, claim.text)
                 soft[sentence] = soft.get(sentence, False) or (claim.outcome == "holds" and claim.soft)
@@ -445,7 +433,7 @@ class MutatedClaims(unittest.TestCase):
         shutil.copytree(REPOSITORY / "results/published", self.root / "results/published")
         shutil.copytree(REPOSITORY / "experiments", self.root / "experiments",
                         ignore=lambda folder, names: [n for n in names if Path(n).suffix not in ("", ".toml")])
-        self.records = records_held_to_their_files(self.root)
+        self.records = list(records.read_records(self.root).values())
 
     def mismatches(self, record):
         return claimed.mismatches(record, claimed.read_spec(self.root, record.experiment_id))
