@@ -13,10 +13,6 @@
 namespace geoprior {
 namespace {
 
-double mean(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 double standard_deviation(std::span<const double> values) {
   const double m = mean(values);
   double squares = 0;
@@ -36,18 +32,10 @@ double central_probability(double t, int nu) {
   return nu % 2 == 0 ? sine * sum : 2 / std::numbers::pi * (theta + sine * sum);
 }
 
-constexpr int kResamples = 2000;
-
 /// Draws as many numbers from `values` as there are, with replacement, into `sample`.
 void draw(std::span<const double> values, RandomStream& random, std::vector<double>& sample) {
   sample.resize(values.size());
   for (double& x : sample) x = values[random.below(static_cast<std::uint32_t>(values.size()))];
-}
-
-/// Value with the percentile interval of its sorted resamples.
-Interval percentile_interval(double value, std::vector<double>& resampled) {
-  std::sort(resampled.begin(), resampled.end());
-  return {value, resampled[kResamples / 40], resampled[kResamples - 1 - kResamples / 40]};
 }
 
 double ratio_to_spread(double distance, double half_range) {
@@ -56,6 +44,15 @@ double ratio_to_spread(double distance, double half_range) {
 }
 
 }  // namespace
+
+double mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Interval percentile_interval(double value, std::vector<double>& resampled) {
+  std::sort(resampled.begin(), resampled.end());
+  return {value, resampled[kResamples / 40], resampled[kResamples - 1 - kResamples / 40]};
+}
 
 Interval jackknife_interval(double value, std::span<const double> without) {
   if (without.size() < 2) throw Error("a jackknife needs two parts", "study");

@@ -2,11 +2,20 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/random.h"
 #include "testbed/runner/judgement/interval.h"
 
 namespace geoprior {
+
+/// Resamples of every bootstrap.
+inline constexpr int kResamples = 2000;
+
+double mean(std::span<const double> values);
+
+/// Value with the 95 % percentile interval of its `kResamples` resamples, which it sorts.
+Interval percentile_interval(double value, std::vector<double>& resampled);
 
 /// Slope of the least-squares line through (x, y) with its 95 % t-interval, normal errors in y.
 /// Two points fix the slope and say nothing of its error: the interval is NaN.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "testbed/runner/judgement/matched.h"
 #include "testbed/runner/judgement/statistics.h"
 #include "testbed/runner/options/quantity.h"
 
@@ -60,10 +61,9 @@ void add_point(StudyRecord& record, const StudySpec& study, const CaseRecord& in
     if (!other) return;
     record.y_of.push_back(*other);
   }
-  if (is_slope(study)) {
-    require_positive(*x, study.against, study, in);
+  if (is_slope(study)) require_positive(*x, study.against, study, in);
+  if (is_slope(study) || study.kind == StudyKind::range)
     require_positive(*y, study.quantity, study, in);
-  }
   record.x.push_back(*x);
   record.y.push_back(*y);
 }
@@ -84,8 +84,62 @@ Interval pooled_interval(const StudyRecord& record) {
   return {record.value, std::nan(""), std::nan("")};
 }
 
+/// Cost and quality of a variant in the cases; false, and nothing is added, where one has neither.
+bool add_priced(const CaseRecord& in, const std::string& name, const StudySpec& study,
+                Priced& priced) {
+  const VariantRecord* variant = variant_in(in, name);
+  if (variant == nullptr) return false;
+  const auto cost = quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
+  const auto quality =
+      quantity_of(in, *variant, study.match, std::nullopt, study.match_reduce).value;
+  require_positive(cost, study.quantity, study, in);
+  priced.cost.push_back(cost);
+  priced.quality.push_back(quality);
+  return true;
+}
+
+/// The value: of all cases; x: errors of the variant and of all members, family after family;
+/// y: their costs.
+Interval add_matched(StudyRecord& record, const StudySpec& study,
+                     const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+  Matched all;
+  for (const auto& family : study.families) all.families.emplace_back(family.size());
+  for (const CaseRecord* in : cases) {
+    Matched next = all;
+    bool whole = add_priced(*in, study.variant, study, next.method);
+    for (std::size_t f = 0; f < study.families.size(); ++f) {
+      for (std::size_t m = 0; m < study.families[f].size(); ++m)
+        whole = whole && add_priced(*in, study.families[f][m], study, next.families[f][m]);
+    }
+    if (whole && !study.of.empty()) {
+      const VariantRecord* right = variant_in(*in, study.of);
+      whole = right != nullptr;
+      if (whole) {
+        next.truth.push_back(
+            quantity_of(*in, *right, study.match, std::nullopt, study.match_reduce).value);
+      }
+    }
+    if (whole) all = std::move(next);
+  }
+  if (all.method.cost.empty()) return {};
+  const auto add = [&](const Priced& priced) {
+    record.x.push_back(error_of(priced, all.truth));
+    record.y.push_back(cost_of(priced));
+  };
+  add(all.method);
+  for (const auto& family : all.families) std::for_each(family.begin(), family.end(), add);
+  return matched_with_interval(all, RandomStream(seed, "study " + study.name));
+}
+
+/// Largest over smallest; a range of what is given has no chance in it, and no interval.
+Interval range_of(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return {*most / *least, std::nan(""), std::nan("")};
+}
+
 Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
   if (study.kind == StudyKind::pooled) return pooled_interval(record);
+  if (study.kind == StudyKind::range) return range_of(record.y);
   if (study.kind == StudyKind::spread) {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
   }
@@ -144,7 +198,11 @@ std::vector<const CaseRecord*> cases_of(const StudySpec& study, const RunRecord&
 }
 
 std::string needed_by(const StudySpec& study) {
-  if (study.kind == StudyKind::spread || study.kind == StudyKind::pooled) {
+  if (study.kind == StudyKind::matched) {
+    return "a case with variant '" + study.variant + "' and all members of its families";
+  }
+  if (study.kind == StudyKind::spread || study.kind == StudyKind::pooled ||
+      study.kind == StudyKind::range) {
     return "at least 2 cases with variant '" + study.variant + "'";
   }
   if (study.kind == StudyKind::within_spread) {
@@ -163,8 +221,11 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
     made.kind = text_of(study.kind);
     made.quantity = study.quantity;
     const std::vector<const CaseRecord*> cases = cases_of(study, record);
+    Interval interval;
     if (study.kind == StudyKind::pooled) {
       add_pooled(made, study, cases);
+    } else if (study.kind == StudyKind::matched) {
+      interval = add_matched(made, study, cases, record.cases.front().seed);
     } else {
       for (const CaseRecord* in : cases) add_point(made, study, *in);
     }
@@ -172,7 +233,8 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
                   "study '" + study.name + "'", needed_by(study));
     }
-    const Interval interval = interval_of(study, made, record.cases.front().seed);
+    if (study.kind != StudyKind::matched)
+      interval = interval_of(study, made, record.cases.front().seed);
     made.value = interval.value;
     made.low = interval.low;
     made.high = interval.high;

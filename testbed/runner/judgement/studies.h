@@ -5,8 +5,8 @@
 
 namespace geoprior {
 
-/// Quantities across cases, with a 95 % interval (t for slopes, bootstrap for spreads, jackknife
-/// over the cases for pooled events).
+/// Quantities across cases, with a 95 % interval (t for slopes, bootstrap for spreads and
+/// matched quality, jackknife over the cases for pooled events; none for ranges).
 std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRecord& record);
 
 }  // namespace geoprior

@@ -8,13 +8,13 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "testbed/runner/judgement/judgement.h"
+#include "testbed/runner/judgement/statistics.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 #include "testbed/runner/options/quantity.h"
 
 namespace geoprior {
 namespace {
 
-constexpr int kResamples = 2000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Times that are drawn from: one a frame, or the repetitions of a single one.

@@ -173,6 +173,8 @@ Gate Gates::of_study(const StudySpec& study) const {
   switch (study.kind) {
     case StudyKind::exponent:
     case StudyKind::order:
+    case StudyKind::range:
+    case StudyKind::matched:
       gate.tolerance = kSlope;
       break;
     case StudyKind::spread:

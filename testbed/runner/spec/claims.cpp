@@ -337,6 +337,42 @@ std::function<std::optional<double>(const std::vector<Event>&)> pooled_quantity(
                              : allowed_names(table.quantity, pooled));
 }
 
+/// What only one kind of study has: `of` of "within-spread" and "matched", quality and rivals of
+/// "matched".
+void require_members(const StudyTable& table, const Topic& topic, const TomlNode& node) {
+  const bool matched = table.kind == StudyKind::matched;
+  const bool compares = table.kind == StudyKind::within_spread;
+  if (!matched && compares != table.of.has_value()) {
+    throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
+                "the variant whose spread is the yardstick, for kind = \"within-spread\"");
+  }
+  if (matched != table.match.has_value()) {
+    throw Error(matched ? "is missing" : "has no meaning for this kind", place_of(node, "match"),
+                "the metric in which rivals are to be equal, for kind = \"matched\"");
+  }
+  if (matched == table.families.empty()) {
+    throw Error(matched ? "is missing" : "has no meaning for this kind", place_of(node, "families"),
+                "[{ variants = […] }, …], from coarse to fine, for kind = \"matched\"");
+  }
+  if (!matched) return;
+  require_metric(*table.match, topic, place_of(node, "match"), {});
+  for (const FamilyTable& family : table.families) {
+    if (!family.variants.empty()) continue;
+    throw Error("has no members", place_of(node, "families"), "variants from coarse to fine");
+  }
+}
+
+/// False when --variant left one of the study's variants out.
+bool all_run(const StudyTable& table, const KnownNames& names, const TomlNode& node) {
+  bool all = runs(table.variant, names, place_of(node, "variant"));
+  if (table.of) all = runs(*table.of, names, place_of(node, "of")) && all;
+  for (const FamilyTable& family : table.families) {
+    for (const std::string& member : family.variants)
+      all = runs(member, names, place_of(node, "families")) && all;
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
@@ -357,8 +393,10 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
       throw Error("a study of a study", place_of(node, "quantity"), "a metric");
     }
     require_metric(table.quantity, topic, place_of(node, "quantity"), {});
-    if (table.reduce == Reduction::every) {
-      throw Error("a study needs one value a case", place_of(node, "reduce"),
+    for (const auto& [reduce, key] :
+         {std::pair(table.reduce, "reduce"), std::pair(table.match_reduce, "match_reduce")}) {
+      if (reduce != Reduction::every) continue;
+      throw Error("a study needs one value a case", place_of(node, key),
                   "max, min, median, p95, p99, mean, sum, last");
     }
     const bool slope = table.kind == StudyKind::exponent || table.kind == StudyKind::order;
@@ -366,18 +404,15 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
       throw Error("is missing", place_of(node, "against"),
                   "a fact of the scene or a swept key, the x of the slope");
     }
-    const bool compares = table.kind == StudyKind::within_spread;
-    if (compares != table.of.has_value()) {
-      throw Error(compares ? "is missing" : "has no meaning for this kind", place_of(node, "of"),
-                  "the variant whose spread is the yardstick, for kind = \"within-spread\"");
-    }
+    require_members(table, topic, node);
     auto of_events = pooled_quantity(table, topic, node);
-    bool decidable = runs(table.variant, names, place_of(node, "variant"));
-    if (table.of) decidable = runs(*table.of, names, place_of(node, "of")) && decidable;
-    if (!decidable) continue;
+    if (!all_run(table, names, node)) continue;
     studies.push_back({table.name, table.kind, table.variant, table.quantity,
                        table.against.value_or(""), table.reduce, table.cases, table.finer,
-                       table.of.value_or(""), std::move(of_events)});
+                       table.of.value_or(""), std::move(of_events), table.match.value_or(""),
+                       table.match_reduce});
+    for (const FamilyTable& family : table.families)
+      studies.back().families.push_back(family.variants);
   }
   return studies;
 }

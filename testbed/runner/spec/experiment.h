@@ -87,9 +87,14 @@ struct StudySpec {
   Reduction reduce = Reduction::median;  ///< over the frames, as a claim's
   std::vector<std::string> cases;        ///< empty: every case that has the variant and `against`
   Finer finer = Finer::smaller;          ///< of `order`
-  std::string of;                        ///< of `within_spread`: the variant that is the yardstick
+  /// Of `within_spread`: the variant that is the yardstick; of `matched`: that which is right, or
+  /// empty where `match` is an error.
+  std::string of;
   /// Of `pooled`: the quantity of events; absent where they have none.
   std::function<std::optional<double>(const std::vector<Event>&)> of_events = {};
+  std::string match = {};  ///< of `matched`: the quality, as `quantity`
+  Reduction match_reduce = Reduction::last;
+  std::vector<std::vector<std::string>> families = {};  ///< of `matched`: variants, coarse to fine
 };
 
 /// The study that the claim is about; null when it is about a variant.

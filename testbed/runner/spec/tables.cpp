@@ -97,21 +97,33 @@ void describe(OptionVisitor& v, ClaimTable& t) {
           {.doc = "false: quick runs are too short for the claim, and leave it out"});
 }
 
+void describe(OptionVisitor& v, FamilyTable& t) {
+  v.value("variants", t.variants,
+          {.doc = "one rival at several resolutions, from coarse to fine", .required = true});
+}
+
 void describe(OptionVisitor& v, StudyTable& t) {
   v.value("name", t.name, {.doc = "name of the study", .required = true});
   describe_choice(v, "kind", t.kind, kStudyKinds,
                   {.doc = "slope in log-log, observed order of convergence, standard deviation, "
-                          "distance of two medians over half the range of `of`, or a metric of the "
-                          "events of all cases together"});
+                          "distance of two medians over half the range of `of`, a metric of the "
+                          "events of all cases together, largest case over smallest, or what "
+                          "rivals cost at equal quality over what the variant costs"});
   v.value("variant", t.variant, {.doc = "variant whose quantity is studied", .required = true});
   v.value(
       "quantity", t.quantity,
       {.doc = "a name of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
-  v.value("of", t.of, {.doc = "variant whose range is the yardstick, of within-spread"});
+  v.value("of", t.of,
+          {.doc = "of within-spread: variant whose range is the yardstick; of matched: variant "
+                  "that is right; absent: `match` is an error"});
   v.value("against", t.against, {.doc = "a fact of the scene, or a swept key"});
   describe_choice(v, "finer", t.finer, kFiner,
                   {.doc = "x of the finer discretisation: a step is smaller, a count larger"});
   describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "one number of all frames"});
+  v.value("match", t.match, {.doc = "of matched: the metric in which rivals are to be equal"});
+  describe_choice(v, "match_reduce", t.match_reduce, kReductions,
+                  {.doc = "one number of all frames of `match`"});
+  describe_list(v, "families", t.families, {.doc = "of matched: the rivals"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have what is asked"});
 }
 

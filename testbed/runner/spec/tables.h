@@ -74,6 +74,11 @@ struct ClaimTable {
   bool quick = true;
 };
 
+/// One rival at several resolutions, from coarse to fine.
+struct FamilyTable {
+  std::vector<std::string> variants;
+};
+
 struct StudyTable {
   std::string name;
   StudyKind kind = StudyKind::exponent;
@@ -83,6 +88,9 @@ struct StudyTable {
   std::optional<std::string> against;
   Finer finer = Finer::smaller;
   Reduction reduce = Reduction::median;
+  std::optional<std::string> match;
+  Reduction match_reduce = Reduction::last;
+  std::vector<FamilyTable> families;
   std::vector<std::string> cases;
 };
 
@@ -116,6 +124,7 @@ void describe(OptionVisitor& v, VariantTable& t);
 void describe(OptionVisitor& v, SweepTable& t);
 void describe(OptionVisitor& v, ExceptTable& t);
 void describe(OptionVisitor& v, ClaimTable& t);
+void describe(OptionVisitor& v, FamilyTable& t);
 void describe(OptionVisitor& v, StudyTable& t);
 void describe(OptionVisitor& v, TimingTable& t);
 void describe(OptionVisitor& v, CheckTable& t);

@@ -19,10 +19,12 @@ inline constexpr std::array<std::string_view, 9> kReductions{"max",  "min", "med
 
 /// `exponent`: slope of log y against log x; `order`: observed order of convergence; `spread`:
 /// standard deviation; `within_spread`: distance of the medians of two variants over half the range
-/// of the second; `pooled`: a metric of the events of all cases together.
-enum class StudyKind { exponent, order, spread, within_spread, pooled };
-inline constexpr std::array<std::string_view, 5> kStudyKinds{"exponent", "order", "spread",
-                                                             "within-spread", "pooled"};
+/// of the second; `pooled`: a metric of the events of all cases together; `range`: the largest
+/// value of the cases over the smallest; `matched`: what the cheapest rival costs at equal quality,
+/// over what the variant costs.
+enum class StudyKind { exponent, order, spread, within_spread, pooled, range, matched };
+inline constexpr std::array<std::string_view, 7> kStudyKinds{
+    "exponent", "order", "spread", "within-spread", "pooled", "range", "matched"};
 
 /// What a claim is decided over: each of its cases by itself, or all seeds of one case together.
 enum class ClaimOver { case_, seed };

@@ -393,6 +393,29 @@ TEST(Studies, WithinSpreadOfAYardstickWithoutSpreadIsZeroOrInfinite) {
   EXPECT_TRUE(std::isinf(apart.low));
 }
 
+TEST(Studies, RangeIsTheLargestCaseOverTheSmallest) {
+  const StudyRecord s = make(study(StudyKind::range, ""), seeds({4, 5, 8}, {1, 1, 1}));
+  EXPECT_EQ(s.value, 2);
+  EXPECT_TRUE(std::isnan(s.low));
+  EXPECT_THROW(make(study(StudyKind::range, ""), seeds({4, 0}, {1, 1})), Error);
+}
+
+// Cost and quality are one metric here: the study takes its numbers from the records.
+TEST(Studies, MatchedComparesWithTheCheapestFamily) {
+  StudySpec s = study(StudyKind::matched, "");
+  s.match = s.quantity;
+  s.match_reduce = s.reduce;
+  s.families = {{"b"}};
+  const StudyRecord made = make(s, seeds({4, 4, 4}, {2, 2, 2}));
+  EXPECT_EQ(made.value, 0.5);
+  EXPECT_EQ(made.x, (std::vector<double>{4, 2}));
+  EXPECT_EQ(made.y, (std::vector<double>{4, 2}));
+  s.of = "b";
+  EXPECT_EQ(make(s, seeds({4, 4, 4}, {2, 2, 2})).x, (std::vector<double>{2, 0}));
+  s.families = {{"nobody"}};
+  EXPECT_THROW(make(s, seeds({4}, {2})), Error);
+}
+
 TEST(Studies, LeaveOutVariantsThatFailed) {
   RunRecord record = seeds({4, 5, 9, 1000}, {1, 5, 3, 3});
   record.cases[3].variants[0].status = "failed";

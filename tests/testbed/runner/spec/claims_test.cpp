@@ -184,6 +184,29 @@ TEST_F(SpecClaims, WhatRunsUnderFurtherSeedsIsDecidedOverThem) {
   EXPECT_EQ(load(file(for_claims + "variants = [\"exact\"]\n", "")).claims.size(), 1U);
 }
 
+TEST_F(SpecClaims, MatchedNamesQualityAndRivals) {
+  const auto study = [&](const std::string& kind, const std::string& members) {
+    return disc_with("[[study]]\nname = \"equal\"\nkind = \"" + kind +
+                     "\"\nvariant = \"polygon\"\nquantity = \"timing:solve\"\n" + members);
+  };
+  const std::string match = "match = \"radius_error\"\n";
+  const std::string families = "families = [{ variants = [\"exact\"] }]\n";
+  const StudySpec read = load(study("matched", match + families)).studies.at(0);
+  EXPECT_EQ(read.match, "radius_error");
+  EXPECT_EQ(read.match_reduce, Reduction::last);
+  EXPECT_EQ(read.families, (std::vector<std::vector<std::string>>{{"exact"}}));
+  EXPECT_THAT(error_of(study("matched", families)), HasSubstr("match: is missing"));
+  EXPECT_THAT(error_of(study("matched", match)), HasSubstr("families: is missing"));
+  EXPECT_THAT(error_of(study("matched", match + "families = [{ variants = [] }]\n")),
+              HasSubstr("has no members"));
+  EXPECT_THAT(error_of(study("matched", match + "families = [{ variants = [\"circle\"] }]\n")),
+              HasSubstr("no variant 'circle'"));
+  EXPECT_THAT(error_of(study("spread", match)), HasSubstr("no meaning"));
+  EXPECT_THAT(error_of(study("range", families)), HasSubstr("no meaning"));
+  EXPECT_THAT(error_of(study("matched", match + families + "match_reduce = \"every\"\n")),
+              HasSubstr("match_reduce"));
+}
+
 TEST_F(SpecClaims, WithinSpreadNamesItsYardstick) {
   const std::string sweep = "[[sweep]]\nkey = \"seed\"\nvalues = [1, 2, 3]\nbase = false\n";
   const auto study = [&](const std::string& kind, const std::string& of) {
