@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "models/paper/meshing/outline.h"
 #include "models/paper/meshing/transfer.h"
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/paper/tear/frame.h"
@@ -15,6 +16,11 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kLayoutNames{"automatic", "structured", "equilateral",
                                                        "delaunay"};
+
+/// Edge length of so many equilateral triangles (m).
+double even_edge(const Pattern& pattern, int triangles) {
+  return std::sqrt(4 / std::sqrt(3.0) * signed_area(pattern) / triangles);
+}
 
 /// A mesh that only tears change: they are cut into its lattice.
 class UniformMesher final : public SheetMesher {
@@ -51,8 +57,7 @@ class UniformMesher final : public SheetMesher {
  private:
   void take_scene(const Sheet& sheet) {
     pattern_ = sheet.pattern;
-    const double edge =
-        std::sqrt(4 / std::sqrt(3.0) * signed_area(sheet.pattern) / options_.triangles);
+    const double edge = even_edge(sheet.pattern, options_.triangles);
     require_lattice(sheet.pattern, edge);
     anchors_ = handle_points(sheet, edge);
     if (!sheet.toughness.tears()) return;
@@ -99,7 +104,8 @@ void describe(OptionVisitor& v, DenseOptions& options) {
 }
 
 std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options) {
-  return std::make_unique<SheetProcess>(sheet, options.stepper,
+  const double edge = even_edge(sheet.pattern, options.triangles);
+  return std::make_unique<SheetProcess>(with_outline(sheet, edge), options.stepper,
                                         std::make_unique<UniformMesher>(options));
 }
 

@@ -12,6 +12,7 @@
 #include "baselines/paper/dense.h"
 #include "core/error.h"
 #include "core/state_bytes.h"
+#include "models/paper/meshing/outline.h"
 #include "models/paper/meshing/transfer.h"
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/paper/tear/frame.h"
@@ -21,6 +22,9 @@ namespace {
 
 /// Edge length of the first mesh, over the largest allowed: splits and collapses both stay away.
 constexpr double kStartSize = 0.8;
+
+/// Distance of corners along curved lines of the outline, over the smallest edge length.
+constexpr double kOutline = 2;
 
 /// Distance from a tear within which vertices make room for it, in steps of the tear.
 constexpr double kRoom = 0.7;
@@ -160,8 +164,8 @@ void describe(OptionVisitor& v, AdaptiveOptions& options) {
 }
 
 std::unique_ptr<Process> make_adaptive_sheet(const Sheet& sheet, const AdaptiveOptions& options) {
-  return std::make_unique<SheetProcess>(sheet, options.stepper,
-                                        std::make_unique<AdaptiveMesher>(options));
+  return std::make_unique<SheetProcess>(with_outline(sheet, kOutline * options.size_min),
+                                        options.stepper, std::make_unique<AdaptiveMesher>(options));
 }
 
 }  // namespace geoprior::paper
