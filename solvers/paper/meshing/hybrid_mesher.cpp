@@ -176,9 +176,8 @@ void HybridMesher::tear_mesh(const Sheet& sheet, ShellState& state, RunContext& 
   if (options_.projection) project(sheet, kRemeshedIterations, state, context);
 }
 
-/// Where the simulated sheet asks for rulings; singular points yield on the way.
-std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellStepper& stepper,
-                                               ShellState& state, RunContext& context) {
+/// What happens in every frame: singular points yield, rulings age and are counted flat.
+void HybridMesher::attend(const Sheet& sheet, const ShellStepper& stepper, ShellState& state) {
   curvature_ = stepper.shape_operators(state);
   if (options_.stepper.plasticity) {
     yield_at_apexes(sheet.material, options_.weakening_radius, mesh_.singular_vertices, curvature_,
@@ -188,6 +187,12 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, const ShellSt
   folds_ = fold_angles(state, mesh_);
   for (Ruling& ruling : structure_.rulings) ++ruling.age_frames;
   count_flat_frames(folds_, options_, looker);
+}
+
+/// Where the simulated sheet asks for rulings.
+std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& state,
+                                               RunContext& context) {
+  RulingEditor looker = editor();
   if (options_.tracking) {
     if (!guide_)
       guide_.emplace(sheet, pattern_, options_.guide_edge, options_.stepper, context.seed());
@@ -262,12 +267,20 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   settle_steps_ = 0;
   ++frames_;
   std::vector<DemandGroup> groups;
+  const bool looks = frames_ % options_.look_frames == 0;
   {
     const Phase phase(context, "analyse");
-    groups = analyse(sheet, stepper, state, context);
+    attend(sheet, stepper, state);
+    if (looks) groups = analyse(sheet, state, context);
   }
   before_ = snapshot(state);
   const Snapshot& before = *before_;
+  if (!looks) {
+    keep(sheet, 1, state, context);
+    if (!options_.projection || projection_.strain_after <= options_.accepted_strain) return false;
+    restore(before, state);
+    groups = analyse(sheet, state, context);
+  }
   if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
     if (!options_.energy_test) return true;
     if (events_.new_singular_points > 0) {

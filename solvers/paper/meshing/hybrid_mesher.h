@@ -55,8 +55,9 @@ class HybridMesher final : public SheetMesher {
   void tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context);
   [[nodiscard]] RulingEditor editor();
   void remesh();
-  [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, const ShellStepper& stepper,
-                                                 ShellState& state, RunContext& context);
+  void attend(const Sheet& sheet, const ShellStepper& stepper, ShellState& state);
+  [[nodiscard]] std::vector<DemandGroup> analyse(const Sheet& sheet, ShellState& state,
+                                                 RunContext& context);
   bool track(RulingEditor& editor, PropagationReport& events);
   [[nodiscard]] PropagationReport edit(const ShellState& state,
                                        const std::vector<DemandGroup>& groups, bool tracking,

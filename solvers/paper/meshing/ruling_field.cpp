@@ -57,7 +57,7 @@ bool is_bent(const Matrix2d& T, const HybridOptions& options) {
 }
 
 /// Turns chords towards the direction of least bending along them, by no more than
-/// `tracking_rate_deg`.
+/// `tracking_rate_deg` a frame.
 bool turn(const BendingField& field, const HybridOptions& options, RulingEditor& editor) {
   std::vector<Ruling>& rulings = editor.structure().rulings;
   bool any = false;
@@ -68,7 +68,8 @@ bool turn(const BendingField& field, const HybridOptions& options, RulingEditor&
     double least = share_along(T, rulings[i].b - rulings[i].a) - kWorthATurn;
     if (least <= 0) continue;
     std::optional<Ruling> best;
-    for (int k = -kTurns; k <= kTurns; ++k) {
+    const int turns = kTurns * options.look_frames;
+    for (int k = -turns; k <= turns; ++k) {
       if (k == 0) continue;
       const auto line = editor.turned(i, k * options.tracking_rate_deg * kDegree / kTurns);
       if (!line) continue;

@@ -10,7 +10,7 @@ namespace geoprior::paper {
 ///
 /// A line of the pattern can stay straight where the sheet does not bend along it: with T the mean
 /// of S S over its length and r its direction, r'T r / tr T is 0 where S r = 0 all along. Rulings
-/// from border to border turn to where it is least, by `tracking_rate_deg` a call at most; those
+/// from border to border turn to where it is least, by `tracking_rate_deg` a frame at most; those
 /// for which it stays above sin^2 of `follow_angle_deg` for some frames go. Then new lines are
 /// laid: beside those that are there, and from where the sheet is bent most to both sides, each
 /// near to the direction of the one beside, as long as none crosses another and none is nearer to
