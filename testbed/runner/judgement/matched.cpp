@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/error.h"
 #include "testbed/runner/judgement/statistics.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 
@@ -74,6 +75,11 @@ double matched_ratio(const Matched& all) {
 Interval matched_with_interval(const Matched& all, RandomStream random) {
   const double value = matched_ratio(all);
   const std::size_t n = all.method.cost.size();
+  for (const auto& family : all.families) {
+    for (const Priced& member : family)
+      if (member.cost.size() != n)
+        throw Error("variants have other frames than each other", "study");
+  }
   if (n < 2) return {value, std::nan(""), std::nan("")};
   std::vector<double> ratios;
   std::vector<int> cases(n);

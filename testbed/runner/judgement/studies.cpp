@@ -98,10 +98,19 @@ bool add_priced(const CaseRecord& in, const std::string& name, const StudySpec& 
   return true;
 }
 
-/// The value: of all cases; x: errors of the variant and of all members, family after family;
-/// y: their costs.
-Interval add_matched(StudyRecord& record, const StudySpec& study,
-                     const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+/// Of a single case the clock alone is drawn by chance: the times of its frames stand for cases.
+void draw_frames(const CaseRecord& in, const StudySpec& study, const std::string& name,
+                 Priced& priced) {
+  const VariantRecord* variant = variant_in(in, name);
+  std::vector<double> times;
+  for (const FrameRecord& frame : variant->frames) {
+    if (const auto time = value_at(in, *variant, study.quantity, frame.parameter)) times.push_back(*time);
+  }
+  priced = {times, std::vector<double>(times.size(), priced.quality.front())};
+}
+
+/// Costs and qualities of the cases that have all variants of the study.
+Matched matched_cases(const StudySpec& study, const std::vector<const CaseRecord*>& cases) {
   Matched all;
   for (const auto& family : study.families) all.families.emplace_back(family.size());
   for (const CaseRecord* in : cases) {
@@ -121,6 +130,14 @@ Interval add_matched(StudyRecord& record, const StudySpec& study,
     }
     if (whole) all = std::move(next);
   }
+  return all;
+}
+
+/// The value: of all cases; x: errors of the variant and of all members, family after family;
+/// y: their costs.
+Interval add_matched(StudyRecord& record, const StudySpec& study,
+                     const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+  Matched all = matched_cases(study, cases);
   if (all.method.cost.empty()) return {};
   const auto add = [&](const Priced& priced) {
     record.x.push_back(error_of(priced, all.truth));
@@ -128,6 +145,17 @@ Interval add_matched(StudyRecord& record, const StudySpec& study,
   };
   add(all.method);
   for (const auto& family : all.families) std::for_each(family.begin(), family.end(), add);
+  const bool of_frames = study.quantity.starts_with("timing:") &&
+                         study.reduce == Reduction::median && cases.size() == 1;
+  if (of_frames) {
+    draw_frames(*cases.front(), study, study.variant, all.method);
+    for (std::size_t f = 0; f < study.families.size(); ++f) {
+      for (std::size_t m = 0; m < study.families[f].size(); ++m)
+        draw_frames(*cases.front(), study, study.families[f][m], all.families[f][m]);
+    }
+    all.truth.resize(all.truth.empty() ? 0 : all.method.cost.size(),
+                     all.truth.empty() ? 0 : all.truth.front());
+  }
   return matched_with_interval(all, RandomStream(seed, "study " + study.name));
 }
 

@@ -416,6 +416,24 @@ TEST(Studies, MatchedComparesWithTheCheapestFamily) {
   EXPECT_THROW(make(s, seeds({4}, {2})), Error);
 }
 
+// Of one case there are the times of its frames: 0.2, 0.5 and 0.2 s, and twice as much of the rival,
+// whose third frame was as fast as the method's.
+TEST(Studies, MatchedDrawsTheFramesOfASingleCase) {
+  RunRecord record = kTwo;
+  record.cases[0].variants[1].timing["solve"] = {{0.4}, {1}, {0.2}};
+  StudySpec s = study(StudyKind::matched, "");
+  s.quantity = "timing:solve";
+  s.match = "error";
+  s.families = {{"a", "b"}};
+  s.variant = "b";
+  const StudyRecord made = make(s, record);
+  EXPECT_EQ(made.value, 0.5) << "the coarsest errs less";
+  EXPECT_EQ(made.x, (std::vector<double>{20, 2, 20}));
+  EXPECT_EQ(made.y, (std::vector<double>{0.4, 0.2, 0.4}));
+  EXPECT_EQ(made.low, 0.5);
+  EXPECT_EQ(made.high, 1);
+}
+
 TEST(Studies, LeaveOutVariantsThatFailed) {
   RunRecord record = seeds({4, 5, 9, 1000}, {1, 5, 3, 3});
   record.cases[3].variants[0].status = "failed";
