@@ -36,7 +36,8 @@ const std::set<std::string> kLongRuns{
     "paper/tear-ablations", "paper/tear-fibres", "paper/tear-hyperbola", "paper/tear-junction",
     "paper/tear-onset", "paper/tear-trouser",
     // A sheet has to snap, to crumple or to come to rest on meshes that are fine enough.
-    "paper/dcone", "paper/dense-adaptive-hybrid", "paper/rigidity", "paper/snap",
+    "paper/dcone", "paper/dense-adaptive-hybrid", "paper/disc-outline", "paper/rigidity",
+    "paper/snap",
     // Banks of sounds, eigenmodes.
     "paper/sound-ablations", "paper/sound-flap-and-crac", "paper/sound-modes",
     // Coarser water or details have no such features, coarser hulls not the drawn silhouettes.

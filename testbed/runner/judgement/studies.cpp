@@ -104,7 +104,8 @@ void draw_frames(const CaseRecord& in, const StudySpec& study, const std::string
   const VariantRecord* variant = variant_in(in, name);
   std::vector<double> times;
   for (const FrameRecord& frame : variant->frames) {
-    if (const auto time = value_at(in, *variant, study.quantity, frame.parameter)) times.push_back(*time);
+    if (const auto time = value_at(in, *variant, study.quantity, frame.parameter))
+      times.push_back(*time);
   }
   priced = {times, std::vector<double>(times.size(), priced.quality.front())};
 }

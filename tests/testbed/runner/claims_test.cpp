@@ -416,8 +416,8 @@ TEST(Studies, MatchedComparesWithTheCheapestFamily) {
   EXPECT_THROW(make(s, seeds({4}, {2})), Error);
 }
 
-// Of one case there are the times of its frames: 0.2, 0.5 and 0.2 s, and twice as much of the rival,
-// whose third frame was as fast as the method's.
+// Of one case there are the times of its frames: 0.2, 0.5 and 0.2 s, and twice as much of the
+// rival, whose third frame was as fast as the method's.
 TEST(Studies, MatchedDrawsTheFramesOfASingleCase) {
   RunRecord record = kTwo;
   record.cases[0].variants[1].timing["solve"] = {{0.4}, {1}, {0.2}};
