@@ -30,8 +30,8 @@ struct HybridOptions {
   /// A singular point is made only when rulings that turn do not serve, and the sheet has less
   /// energy with it; it goes again when it has no more without, unless the paper has yielded there.
   bool energy_test = true;
-  /// Frames between two looks at where rulings should be; between them the structure stays, unless
-  /// the sheet strains.
+  /// In every so many frames there is a look at where rulings should be; between them the structure
+  /// stays, unless the sheet strains.
   int look_frames = 1;
   bool tracking = true;
   double guide_edge = 0.018;  ///< m

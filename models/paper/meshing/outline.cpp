@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/geometry/planar.h"
+#include "models/paper/sheet/valid.h"
 
 namespace geoprior::paper {
 namespace {
@@ -20,6 +21,8 @@ using Loop = std::vector<Vector2d>;
 constexpr double kSharp = 20 * std::numbers::pi / 180;
 /// Farthest that a line turns between two new corners.
 constexpr double kMostTurn = 30 * std::numbers::pi / 180;
+/// A line that turns by less is straight.
+constexpr double kStraight = 1e-6;
 /// Points of the outline within this share of the pattern's width.
 constexpr double kOnOutline = 1e-9;
 /// A kept point this near to the outline, in edge lengths, keeps the outline beside it.
@@ -47,14 +50,14 @@ double twice_area(std::span<const Vector2d> line) {
   return sum;
 }
 
-/// Corners of a loop with the kept points that lie on its sides between them.
-std::vector<Corner> with_kept(const Loop& loop, const std::vector<Vector2d>& kept,
+/// Corners with the kept points that lie on the sides between them.
+std::vector<Corner> with_kept(const std::vector<Corner>& shape, const std::vector<Vector2d>& kept,
                               double tolerance) {
   std::vector<Corner> corners;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector2d &a = loop[i], along = loop[(i + 1) % loop.size()] - a;
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const Vector2d &a = shape[i].point, along = shape[(i + 1) % shape.size()].point - a;
     std::vector<std::pair<double, Vector2d>> stops;
-    corners.push_back({a});
+    corners.push_back(shape[i]);
     for (const Vector2d& p : kept) {
       const double t = (p - a).dot(along) / along.squaredNorm();
       if ((p - a).norm() <= tolerance) {
@@ -125,7 +128,9 @@ std::vector<Vector2d> thinned(std::span<const Vector2d> line, double edge) {
     length += (line[i + 1] - line[i]).norm();
     if (i > 0) turn += turn_at(line[i - 1], line[i], line[i + 1]);
   }
-  const int pieces = std::max({1, static_cast<int>(std::lround(length / edge)),
+  // Without a point between its ends a line has no area to keep.
+  const int least = turn > kStraight ? 2 : 1;
+  const int pieces = std::max({least, static_cast<int>(std::lround(length / edge)),
                                static_cast<int>(std::ceil(turn / kMostTurn - 1e-9))});
   if (pieces >= std::ssize(line) - 1) return {line.begin(), line.end()};
   std::vector<Vector2d> points = evenly(line, length, pieces);
@@ -135,8 +140,10 @@ std::vector<Vector2d> thinned(std::span<const Vector2d> line, double edge) {
 
 Loop resampled_loop(const Loop& loop, double edge, const std::vector<Vector2d>& kept,
                     double tolerance) {
-  std::vector<Corner> corners = with_kept(loop, kept, tolerance);
+  std::vector<Corner> corners;
+  for (const Vector2d& p : loop) corners.push_back({p});
   mark_shape(edge, corners);
+  corners = with_kept(corners, kept, tolerance);
   const auto first =
       std::find_if(corners.begin(), corners.end(), [](const Corner& c) { return c.stays; });
   // Of a curve without a corner of its own the first one is as good as any.
@@ -170,18 +177,29 @@ bool is_simple(const Pattern& pattern) {
   }
 }
 
+bool is_valid(const Sheet& sheet) {
+  try {
+    require_valid(sheet, "sheet");
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
-Pattern resampled(const Pattern& pattern, double edge, const std::vector<Vector2d>& kept) {
+Pattern resampled(const Pattern& pattern, double edge, const std::vector<Vector2d>& kept,
+                  const std::function<bool(const Pattern&)>& accepts) {
   const double tolerance = kOnOutline * width(pattern);
   for (int halving = 0; halving < kMostHalvings; ++halving, edge /= 2) {
     Pattern result{resampled_loop(pattern.border, edge, kept, tolerance), {}, pattern.cuts};
     for (const Loop& hole : pattern.holes)
       result.holes.push_back(resampled_loop(hole, edge, kept, tolerance));
+    if (result.border == pattern.border && result.holes == pattern.holes) return pattern;
     const bool holds = std::all_of(kept.begin(), kept.end(), [&](const Vector2d& p) {
       return contains(result, p, tolerance) || !contains(pattern, p, tolerance);
     });
-    if (holds && is_simple(result)) return result;
+    if (holds && is_simple(result) && accepts(result)) return result;
   }
   return pattern;
 }
@@ -196,7 +214,11 @@ Sheet with_outline(Sheet sheet, double edge) {
     }
   }
   for (const Loop& cut : sheet.pattern.cuts) kept.insert(kept.end(), {cut.front(), cut.back()});
-  sheet.pattern = resampled(sheet.pattern, edge, kept);
+  Sheet tried = sheet;
+  sheet.pattern = resampled(sheet.pattern, edge, kept, [&](const Pattern& pattern) {
+    tried.pattern = pattern;
+    return is_valid(tried);
+  });
   return sheet;
 }
 

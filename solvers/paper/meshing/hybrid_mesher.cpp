@@ -132,6 +132,7 @@ ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   rejected_ = 0;
   unborn_ = 0;
   frames_ = 0;
+  since_look_ = 0;
   settle_steps_ = 0;
   tearing_.reset();
   take_scene(sheet);
@@ -204,7 +205,7 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
 
 bool HybridMesher::track(RulingEditor& editor, PropagationReport& events) {
   const bool refined = refine_rulings(folds_, options_, editor);
-  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings);
+  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings, since_look_);
   return refined || followed;
 }
 
@@ -266,8 +267,9 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   meshes_made_ = 0;
   settle_steps_ = 0;
   ++frames_;
+  ++since_look_;
   std::vector<DemandGroup> groups;
-  const bool looks = frames_ % options_.look_frames == 0;
+  const bool looks = since_look_ >= options_.look_frames;
   {
     const Phase phase(context, "analyse");
     attend(sheet, stepper, state);
@@ -279,13 +281,24 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     keep(sheet, 1, state, context);
     if (!options_.projection || projection_.strain_after <= options_.accepted_strain) return false;
     restore(before, state);
+    const Phase phase(context, "analyse");
     groups = analyse(sheet, state, context);
   }
+  const bool reviews =
+      options_.energy_test && frames_ / kReview != (frames_ - since_look_) / kReview;
+  const bool changed_by_look = look(sheet, groups, reviews, before, state, context);
+  since_look_ = 0;
+  return changed_by_look;
+}
+
+/// Changes the structure as the groups ask, where the sheet can follow.
+bool HybridMesher::look(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool reviews,
+                        const Snapshot& before, ShellState& state, RunContext& context) {
   if (try_change(sheet, groups, options_.tracking, kRemeshedIterations, before, state, context)) {
     if (!options_.energy_test) return true;
     if (events_.new_singular_points > 0) {
       weigh_births(sheet, before, state, context);
-    } else if (frames_ % kReview == 0) {
+    } else if (reviews) {
       review_points(sheet, state, context);
     }
     return true;
@@ -296,7 +309,7 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   if (changed) restore(before, state);
   keep(sheet, 1, state, context);
   if (!options_.projection || projection_.strain_after <= options_.accepted_strain)
-    return options_.energy_test && frames_ % kReview == 0 && review_points(sheet, state, context);
+    return reviews && review_points(sheet, state, context);
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
 }
 
@@ -348,7 +361,7 @@ bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunConte
   RulingEditor pen = editor();
   pen.remove_point(static_cast<int>(unyielded - points.begin()));
   int new_rulings = 0;
-  if (field_) follow_bending(*field_, options_, pen, new_rulings);
+  if (field_) follow_bending(*field_, options_, pen, new_rulings, since_look_);
   remesh();
   carry(sheet, state, structure_.singular_points.size(), context);
   if (options_.projection) project(sheet, kRemeshedIterations, state, context);
@@ -474,6 +487,7 @@ void HybridMesher::save(StateWriter& out) const {
   out.number(rejected_);
   out.number(unborn_);
   out.number(frames_);
+  out.number(since_look_);
 }
 
 void HybridMesher::load(const Sheet& sheet, StateReader& in) {
@@ -484,6 +498,7 @@ void HybridMesher::load(const Sheet& sheet, StateReader& in) {
   rejected_ = in.number<int>();
   unborn_ = in.number<int>();
   frames_ = in.number<int>();
+  since_look_ = in.number<int>();
   meshed_ = false;
 }
 

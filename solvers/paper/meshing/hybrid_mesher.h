@@ -64,6 +64,8 @@ class HybridMesher final : public SheetMesher {
                                        std::uint64_t seed);
   void resolve(const ShellState& state, const std::vector<DemandGroup>& groups, std::uint64_t seed,
                RulingEditor& pen, PropagationReport& total);
+  bool look(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool reviews,
+            const Snapshot& before, ShellState& state, RunContext& context);
   bool try_change(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool tracking,
                   int effort, const Snapshot& before, ShellState& state, RunContext& context);
   void keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
@@ -96,6 +98,7 @@ class HybridMesher final : public SheetMesher {
   int settle_steps_ = 0;  ///< in this frame
   int meshes_made_ = 0;   ///< in this frame, of changes taken back too
   int frames_ = 0;        ///< so far
+  int since_look_ = 0;    ///< frames
   int unborn_ = 0;        ///< singular points that were not worth their energy, so far
   int rejected_ = 0;      ///< changes of the structure that the sheet could not follow, so far
 };

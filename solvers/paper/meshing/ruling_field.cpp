@@ -58,7 +58,8 @@ bool is_bent(const Matrix2d& T, const HybridOptions& options) {
 
 /// Turns chords towards the direction of least bending along them, by no more than
 /// `tracking_rate_deg` a frame.
-bool turn(const BendingField& field, const HybridOptions& options, RulingEditor& editor) {
+bool turn(const BendingField& field, const HybridOptions& options, int frames,
+          RulingEditor& editor) {
   std::vector<Ruling>& rulings = editor.structure().rulings;
   bool any = false;
   for (int i = 0; i < std::ssize(rulings); ++i) {
@@ -68,7 +69,7 @@ bool turn(const BendingField& field, const HybridOptions& options, RulingEditor&
     double least = share_along(T, rulings[i].b - rulings[i].a) - kWorthATurn;
     if (least <= 0) continue;
     std::optional<Ruling> best;
-    const int turns = kTurns * options.look_frames;
+    const int turns = kTurns * frames;
     for (int k = -turns; k <= turns; ++k) {
       if (k == 0) continue;
       const auto line = editor.turned(i, k * options.tracking_rate_deg * kDegree / kTurns);
@@ -200,18 +201,18 @@ class RulingLayer {
 }  // namespace
 
 bool follow_bending(const BendingField& field, const HybridOptions& options, RulingEditor& editor,
-                    int& new_rulings) {
+                    int& new_rulings, int frames) {
   const double most = std::pow(std::sin(options.follow_angle_deg * kDegree), 2);
   std::vector<Ruling>& rulings = editor.structure().rulings;
-  const bool turned = turn(field, options, editor);
+  const bool turned = turn(field, options, frames, editor);
   std::vector<bool> gone(rulings.size(), false);
   for (std::size_t i = 0; i < rulings.size(); ++i) {
     if (!is_chord(rulings[i])) continue;
     const Matrix2d T = bending_along(field, rulings[i].a, rulings[i].b);
     const double share = share_along(T, rulings[i].b - rulings[i].a);
-    int& frames = rulings[i].astray_frames;
-    frames = is_bent(T, options) && share > most ? frames + 1 : 0;
-    gone[i] = frames >= kPatience || (frames > 0 && share > kFarAstray);
+    int& astray = rulings[i].astray_frames;
+    astray = is_bent(T, options) && share > most ? astray + frames : 0;
+    gone[i] = astray >= kPatience || (astray > 0 && share > kFarAstray);
   }
   const bool removed = std::find(gone.begin(), gone.end(), true) != gone.end();
   if (removed) editor.remove(gone);

@@ -17,7 +17,8 @@ namespace geoprior::paper {
 /// one than the bending asks for (a fold of `refine_angle_deg` a line, `seeding_distance` at most).
 ///
 /// Lines that end in singular points are left alone. Returns true when anything changed.
+/// @param frames  since the last call
 bool follow_bending(const BendingField& field, const HybridOptions& options, RulingEditor& editor,
-                    int& new_rulings);
+                    int& new_rulings, int frames = 1);
 
 }  // namespace geoprior::paper

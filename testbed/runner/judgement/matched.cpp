@@ -24,7 +24,7 @@ Priced at_cases(const Priced& variant, const std::vector<int>& cases) {
 }
 
 Matched at_cases(const Matched& all, const std::vector<int>& cases) {
-  Matched chosen{at_cases(all.method, cases), {}, {}};
+  Matched chosen{at_cases(all.method, cases), {}, {}, all.cost};
   for (const auto& family : all.families) {
     auto& members = chosen.families.emplace_back();
     for (const Priced& member : family) members.push_back(at_cases(member, cases));
@@ -34,10 +34,10 @@ Matched at_cases(const Matched& all, const std::vector<int>& cases) {
 }
 
 /// What a family costs at an error.
-double cost_at(double error, const std::vector<Priced>& family, const std::vector<double>& truth) {
+double cost_at(double error, const std::vector<Priced>& family, const Matched& all) {
   double best = std::numeric_limits<double>::infinity(), at_best = 0;
   for (const Priced& member : family) {
-    const double e = error_of(member, truth), cost = cost_of(member);
+    const double e = error_of(member, all.truth), cost = cost_of(member, all.cost);
     if (!(e < best)) continue;
     if (e <= error) {
       if (!std::isfinite(best) || !(e > 0)) return cost;
@@ -62,14 +62,15 @@ double error_of(const Priced& variant, const std::vector<double>& truth) {
   return sum / static_cast<double>(a.size());
 }
 
-double cost_of(const Priced& variant) { return median(variant.cost); }
+double cost_of(const Priced& variant, Reduction over) {
+  return over == Reduction::mean ? mean(variant.cost) : median(variant.cost);
+}
 
 double matched_ratio(const Matched& all) {
   const double error = error_of(all.method, all.truth);
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& family : all.families)
-    least = std::min(least, cost_at(error, family, all.truth));
-  return least / cost_of(all.method);
+  for (const auto& family : all.families) least = std::min(least, cost_at(error, family, all));
+  return least / cost_of(all.method, all.cost);
 }
 
 Interval matched_with_interval(const Matched& all, RandomStream random) {

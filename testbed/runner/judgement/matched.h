@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "testbed/runner/judgement/interval.h"
+#include "testbed/runner/spec/terms.h"
 
 namespace geoprior {
 
@@ -18,6 +19,7 @@ struct Matched {
   Priced method;
   std::vector<std::vector<Priced>> families;  ///< each from coarse to fine
   std::vector<double> truth;                  ///< of each case; empty: qualities are errors
+  Reduction cost = Reduction::median;         ///< over the cases: median or mean
 };
 
 /// How far off a variant is: the mean of its errors; with a truth the first Wasserstein distance of
@@ -25,8 +27,8 @@ struct Matched {
 /// distributions can agree.
 double error_of(const Priced& variant, const std::vector<double>& truth);
 
-/// Median over the cases.
-double cost_of(const Priced& variant);
+/// Median or mean over the cases.
+double cost_of(const Priced& variant, Reduction over);
 
 /// What the cheapest family costs at the method's error, over what the method costs: above 1 the
 /// method is cheaper than its rivals at their equal. Of a family the cost is interpolated between

@@ -84,91 +84,124 @@ Interval pooled_interval(const StudyRecord& record) {
   return {record.value, std::nan(""), std::nan("")};
 }
 
-/// Cost and quality of a variant in the cases; false, and nothing is added, where one has neither.
+/// Times of the frames of a variant that the case has.
+std::vector<double> frame_times(const CaseRecord& in, const std::string& name,
+                                const StudySpec& study) {
+  std::vector<double> times;
+  const VariantRecord& variant = *variant_in(in, name);
+  for (const FrameRecord& frame : variant.frames) {
+    const auto time = value_at(in, variant, study.quantity, frame.parameter);
+    if (time) times.push_back(*time);
+  }
+  return times;
+}
+
+bool is_timed(const StudySpec& study) { return study.quantity.starts_with("timing:"); }
+
+/// Adds cost and quality of a variant in a case; false where the case does not have the variant.
 bool add_priced(const CaseRecord& in, const std::string& name, const StudySpec& study,
                 Priced& priced) {
   const VariantRecord* variant = variant_in(in, name);
   if (variant == nullptr) return false;
-  const auto cost = quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
-  const auto quality =
+  const double cost = quantity_of(in, *variant, study.quantity, std::nullopt, study.reduce).value;
+  const double quality =
       quantity_of(in, *variant, study.match, std::nullopt, study.match_reduce).value;
   require_positive(cost, study.quantity, study, in);
+  if (!std::isfinite(quality) || (study.of.empty() && quality < 0)) {
+    throw Error(study.match + " of variant '" + name + "' is no error",
+                "study '" + study.name + "', case '" + in.name + "'", "finite, not negative");
+  }
   priced.cost.push_back(cost);
   priced.quality.push_back(quality);
   return true;
 }
 
-/// Of a single case the clock alone is drawn by chance: the times of its frames stand for cases.
-void draw_frames(const CaseRecord& in, const StudySpec& study, const std::string& name,
-                 Priced& priced) {
-  const VariantRecord* variant = variant_in(in, name);
-  std::vector<double> times;
-  for (const FrameRecord& frame : variant->frames) {
-    if (const auto time = value_at(in, *variant, study.quantity, frame.parameter))
-      times.push_back(*time);
+/// Adds a case to all samples; false, and some of them have it, where it lacks a variant.
+bool add_case(const CaseRecord& in, const StudySpec& study, Matched& all) {
+  bool whole = add_priced(in, study.variant, study, all.method);
+  for (std::size_t f = 0; f < study.families.size(); ++f) {
+    for (std::size_t m = 0; m < study.families[f].size(); ++m)
+      whole = whole && add_priced(in, study.families[f][m], study, all.families[f][m]);
   }
-  priced = {times, std::vector<double>(times.size(), priced.quality.front())};
+  if (!whole || study.of.empty()) return whole;
+  const VariantRecord* right = variant_in(in, study.of);
+  if (right == nullptr) return false;
+  all.truth.push_back(quantity_of(in, *right, study.match, std::nullopt, study.match_reduce).value);
+  return true;
 }
 
-/// Costs and qualities of the cases that have all variants of the study.
-Matched matched_cases(const StudySpec& study, const std::vector<const CaseRecord*>& cases) {
-  Matched all;
-  for (const auto& family : study.families) all.families.emplace_back(family.size());
-  for (const CaseRecord* in : cases) {
-    Matched next = all;
-    bool whole = add_priced(*in, study.variant, study, next.method);
-    for (std::size_t f = 0; f < study.families.size(); ++f) {
-      for (std::size_t m = 0; m < study.families[f].size(); ++m)
-        whole = whole && add_priced(*in, study.families[f][m], study, next.families[f][m]);
-    }
-    if (whole && !study.of.empty()) {
-      const VariantRecord* right = variant_in(*in, study.of);
-      whole = right != nullptr;
-      if (whole) {
-        next.truth.push_back(
-            quantity_of(*in, *right, study.match, std::nullopt, study.match_reduce).value);
-      }
-    }
-    if (whole) all = std::move(next);
+/// Of a single case the clock alone is drawn by chance: its frames stand for cases.
+void draw_frames(const CaseRecord& in, const StudySpec& study, Matched& all) {
+  const auto draw = [&](const std::string& name, Priced& priced) {
+    priced.cost = frame_times(in, name, study);
+    priced.quality.assign(priced.cost.size(), priced.quality.front());
+  };
+  draw(study.variant, all.method);
+  for (std::size_t f = 0; f < study.families.size(); ++f) {
+    for (std::size_t m = 0; m < study.families[f].size(); ++m)
+      draw(study.families[f][m], all.families[f][m]);
   }
-  return all;
+  if (!all.truth.empty()) all.truth.assign(all.method.cost.size(), all.truth.front());
 }
 
-/// The value: of all cases; x: errors of the variant and of all members, family after family;
-/// y: their costs.
+/// The value: of all cases that have all variants; x: errors of the variant and of all members,
+/// family after family; y: their costs.
 Interval add_matched(StudyRecord& record, const StudySpec& study,
                      const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
-  Matched all = matched_cases(study, cases);
-  if (all.method.cost.empty()) return {};
+  Matched all;
+  all.cost = study.reduce == Reduction::mean ? Reduction::mean : Reduction::median;
+  for (const auto& family : study.families) all.families.emplace_back(family.size());
+  std::vector<const CaseRecord*> kept;
+  for (const CaseRecord* in : cases) {
+    Matched next = all;
+    if (!add_case(*in, study, next)) continue;
+    all = std::move(next);
+    kept.push_back(in);
+  }
+  if (kept.empty()) return {};
   const auto add = [&](const Priced& priced) {
     record.x.push_back(error_of(priced, all.truth));
-    record.y.push_back(cost_of(priced));
+    record.y.push_back(cost_of(priced, all.cost));
   };
   add(all.method);
   for (const auto& family : all.families) std::for_each(family.begin(), family.end(), add);
-  const bool of_frames = study.quantity.starts_with("timing:") &&
-                         study.reduce == Reduction::median && cases.size() == 1;
-  if (of_frames) {
-    draw_frames(*cases.front(), study, study.variant, all.method);
-    for (std::size_t f = 0; f < study.families.size(); ++f) {
-      for (std::size_t m = 0; m < study.families[f].size(); ++m)
-        draw_frames(*cases.front(), study, study.families[f][m], all.families[f][m]);
-    }
-    all.truth.resize(all.truth.empty() ? 0 : all.method.cost.size(),
-                     all.truth.empty() ? 0 : all.truth.front());
-  }
+  const bool one_number = study.reduce == Reduction::median || study.reduce == Reduction::mean;
+  if (kept.size() == 1 && is_timed(study) && one_number) draw_frames(*kept.front(), study, all);
   return matched_with_interval(all, RandomStream(seed, "study " + study.name));
 }
 
-/// Largest over smallest; a range of what is given has no chance in it, and no interval.
-Interval range_of(const std::vector<double>& values) {
+double largest_over_smallest(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return {*most / *least, std::nan(""), std::nan("")};
+  return *most / *least;
+}
+
+/// Of times with the percentile interval over the frames of each case; what else is given has no
+/// chance in it, and no interval.
+Interval range_of(const StudySpec& study, const StudyRecord& record,
+                  const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+  const double value = largest_over_smallest(record.y);
+  if (!is_timed(study)) return {value, std::nan(""), std::nan("")};
+  std::vector<std::vector<double>> times;
+  for (const CaseRecord* in : cases) {
+    if (variant_in(*in, study.variant) != nullptr)
+      times.push_back(frame_times(*in, study.variant, study));
+  }
+  RandomStream random(seed, "study " + study.name);
+  std::vector<double> resampled;
+  for (int r = 0; r < kResamples; ++r) {
+    std::vector<double> of_cases;
+    for (const std::vector<double>& frames : times) {
+      std::vector<double> sample(frames.size());
+      for (double& x : sample) x = frames[random.below(static_cast<std::uint32_t>(frames.size()))];
+      of_cases.push_back(reduced(std::move(sample), study.reduce));
+    }
+    resampled.push_back(largest_over_smallest(of_cases));
+  }
+  return percentile_interval(value, resampled);
 }
 
 Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
   if (study.kind == StudyKind::pooled) return pooled_interval(record);
-  if (study.kind == StudyKind::range) return range_of(record.y);
   if (study.kind == StudyKind::spread) {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
   }
@@ -262,8 +295,12 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
                   "study '" + study.name + "'", needed_by(study));
     }
-    if (study.kind != StudyKind::matched)
-      interval = interval_of(study, made, record.cases.front().seed);
+    const std::uint64_t seed = record.cases.front().seed;
+    if (study.kind == StudyKind::range) {
+      interval = range_of(study, made, cases, seed);
+    } else if (study.kind != StudyKind::matched) {
+      interval = interval_of(study, made, seed);
+    }
     made.value = interval.value;
     made.low = interval.low;
     made.high = interval.high;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "models/paper/sheet/valid.h"
 #include "tests/paper/contact/plane_shapes.h"
 
 namespace geoprior::paper {
@@ -80,27 +81,82 @@ TEST(Outline, KeptPointsAreCornersOfIt) {
   EXPECT_NEAR(signed_area(coarse), signed_area(disc), 1e-9);
 }
 
-// A ring 2 mm wide of 300 corners: with corners 40 mm apart both loops would cross.
+// A ring 0.2 mm wide of 300 corners: a dozen corners on each loop would cross by a millimetre.
 TEST(Outline, NeverTouchesItself) {
   Pattern ring = disc_pattern(0.05, 300);
-  std::vector<Vector2d> hole = disc_pattern(0.048, 300).border;
+  std::vector<Vector2d> hole = disc_pattern(0.0498, 300).border;
   for (Vector2d& p : hole) p = Eigen::Rotation2Dd(0.1) * p;
   ring.holes = {{hole.rbegin(), hole.rend()}};
   const Pattern coarse = resampled(ring, 0.04, {});
   EXPECT_NO_THROW(require_simple(coarse, "ring"));
-  EXPECT_LT(coarse.border.size(), 100U);
+  EXPECT_GT(coarse.border.size(), 12U) << "as few as where nothing is beside it";
+  EXPECT_LT(coarse.border.size(), 300U);
   EXPECT_NEAR(signed_area(coarse), signed_area(ring), 1e-9);
+}
+
+// The holes of a drawing run the other way round; a cut ends on one.
+TEST(Outline, RoundHolesAndEndsOfCuts) {
+  Pattern sheet = rectangle_pattern(0.2, 0.2);
+  const std::vector<Vector2d> hole = disc_pattern(0.04, 200).border;
+  sheet.holes = {{hole.rbegin(), hole.rend()}};
+  const Vector2d end = 0.4 * hole[20] + 0.6 * hole[21];
+  sheet.cuts = {{end, Vector2d(0.08, 0.06)}};
+  const Pattern coarse = resampled(sheet, 0.02, {end});
+  EXPECT_NO_THROW(require_simple(coarse, "sheet"));
+  EXPECT_LT(coarse.holes[0].size(), 20U);
+  EXPECT_TRUE(has_corner(coarse.holes[0], end));
+  EXPECT_EQ(coarse.cuts, sheet.cuts);
+  EXPECT_NEAR(signed_area(coarse), signed_area(sheet), 1e-9);
+}
+
+// Its straight sides are longer than an edge until the hand on one of them divides it.
+TEST(Outline, AHandOnALongSideDoesNotRoundItsEnds) {
+  Pattern sheet = rectangle_pattern(0.2, 0.03);
+  for (const double side : {1.0, -1.0}) {
+    std::vector<Vector2d> cap;
+    for (int k = 1; k < 40; ++k) {
+      const double angle = side * (std::numbers::pi * k / 40 - std::numbers::pi / 2);
+      cap.emplace_back(side * 0.1 + 0.015 * std::cos(angle) * side, 0.015 * std::sin(angle));
+    }
+    const auto at = side > 0 ? sheet.border.begin() + 2 : sheet.border.end();
+    sheet.border.insert(at, cap.begin(), cap.end());
+  }
+  ASSERT_NO_THROW(require_simple(sheet, "stadium"));
+  const Pattern coarse = resampled(sheet, 0.15, {{0, -0.015}});
+  for (const double x : {-0.1, 0.1}) {
+    for (const double y : {-0.015, 0.015})
+      EXPECT_TRUE(has_corner(coarse.border, {x, y})) << x << " " << y;
+  }
 }
 
 TEST(Outline, HandlesStayInTheSheet) {
   Sheet sheet;
   sheet.pattern = disc_pattern(0.1, 1000);
   Handle hand;
+  hand.name = "hand";
+  hand.force = Eigen::Vector3d(0, 0, 0.1);
   hand.points = {sheet.pattern.border[123], {0.0998 * std::cos(2.0), 0.0998 * std::sin(2.0)}};
   sheet.handles = {hand};
   const Sheet coarse = with_outline(sheet, 0.05);
   EXPECT_LT(coarse.pattern.border.size(), 20U);
   for (const Vector2d& p : hand.points) EXPECT_TRUE(contains(coarse.pattern, p, 1e-9));
+}
+
+// A hand that only just lies on the sheet would reach over the chord that takes the place of an
+// arc.
+TEST(Outline, AHandThatTouchesTheBorderStaysOnTheSheet) {
+  Sheet sheet;
+  sheet.pattern = disc_pattern(0.1, 1000);
+  Handle hand;
+  hand.name = "hand";
+  hand.points = {{0.09, 0}};
+  hand.disc_radius = 0.009999;
+  hand.force = Eigen::Vector3d(0, 0, 0.1);
+  sheet.handles = {hand};
+  ASSERT_NO_THROW(require_valid(sheet, "sheet"));
+  const Sheet coarse = with_outline(sheet, 0.0042);
+  EXPECT_NO_THROW(require_valid(coarse, "sheet"));
+  EXPECT_LT(coarse.pattern.border.size(), 1000U);
 }
 
 }  // namespace

@@ -400,6 +400,21 @@ TEST(Studies, RangeIsTheLargestCaseOverTheSmallest) {
   EXPECT_THROW(make(study(StudyKind::range, ""), seeds({4, 0}, {1, 1})), Error);
 }
 
+TEST(Studies, RangeOfTimesHasTheIntervalOfTheirFrames) {
+  RunRecord record = seeds({1, 1}, {1, 1});
+  for (CaseRecord& in : record.cases) in.variants[0].frames = {{0, {}}, {45, {}}, {90, {}}};
+  record.cases[1].variants[0].timing["solve"] = {{0.4}, {1}, {0.4}};
+  StudySpec s = study(StudyKind::range, "");
+  s.quantity = "timing:solve";
+  s.reduce = Reduction::mean;
+  const StudyRecord made = make(s, record);  // 0.2, 0.5, 0.2 s in the other case
+  EXPECT_NEAR(made.value, 2, 1e-12);
+  EXPECT_GE(made.low, 1);
+  EXPECT_LT(made.low, 2);
+  EXPECT_GT(made.high, 2);
+  EXPECT_LE(made.high, 5);
+}
+
 // Cost and quality are one metric here: the study takes its numbers from the records.
 TEST(Studies, MatchedComparesWithTheCheapestFamily) {
   StudySpec s = study(StudyKind::matched, "");
@@ -432,6 +447,11 @@ TEST(Studies, MatchedDrawsTheFramesOfASingleCase) {
   EXPECT_EQ(made.y, (std::vector<double>{0.4, 0.2, 0.4}));
   EXPECT_EQ(made.low, 0.5);
   EXPECT_EQ(made.high, 1);
+  // Frames that cost most count in the mean.
+  s.reduce = Reduction::mean;
+  EXPECT_EQ(make(s, record).value, 0.3 / (1.6 / 3));
+  record.cases[0].variants[0].metrics["error"].values = {-1, -1, -1};
+  EXPECT_THROW(make(s, record), Error) << "an error is not negative";
 }
 
 TEST(Studies, LeaveOutVariantsThatFailed) {

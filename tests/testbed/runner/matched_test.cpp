@@ -35,7 +35,8 @@ TEST(Matched, ErrorAgainstATruthIsThatOfDistributions) {
   EXPECT_EQ(error_of({{1, 1, 1}, {3, 1, 2}}, {1, 2, 3}), 0);
   EXPECT_EQ(error_of({{1, 1}, {1, 5}}, {4, 2}), 1);
   EXPECT_EQ(error_of({{1, 1}, {1, 5}}, {}), 3);
-  EXPECT_EQ(cost_of({{1, 9, 2}, {0, 0, 0}}), 2);
+  EXPECT_EQ(cost_of({{1, 9, 2}, {0, 0, 0}}, Reduction::median), 2);
+  EXPECT_EQ(cost_of({{1, 9, 2}, {0, 0, 0}}, Reduction::mean), 4);
 }
 
 TEST(Matched, IntervalIsOfTheCases) {
