@@ -63,6 +63,31 @@ TEST(HybridBend, MakesACylinderOfTheHeightOfTheElastica) {
   EXPECT_NEAR(height, 0.2 * relative_elastica_height(0.4), 0.02 * 0.2);
 }
 
+// Between two looks no ruling turns, comes or goes, and the sheet still bends to the elastica.
+TEST(HybridBend, LooksInEveryFourthFrameOnly) {
+  const Sheet sheet = bent_sheet();
+  HybridOptions options;
+  options.look_frames = 4;
+  std::vector<int> changed;
+  std::vector<Ruling> before;
+  ShellState end;
+  int frame = 0;
+  run_hybrid(sheet, options, 1, [&](const HybridMesher& mesher, const ShellState& state) {
+    const std::vector<Ruling>& rulings = mesher.structure().rulings;
+    const bool same =
+        std::equal(rulings.begin(), rulings.end(), before.begin(), before.end(),
+                   [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
+    if (!same) changed.push_back(frame);
+    before = rulings;
+    end = state;
+    ++frame;
+  });
+  ASSERT_FALSE(changed.empty());
+  for (const int k : changed) EXPECT_EQ(k % 4, changed.front() % 4) << k;
+  EXPECT_LT(std::ssize(changed), frame / 3);
+  EXPECT_NEAR(end.x.col(2).cwiseAbs().maxCoeff(), 0.2 * relative_elastica_height(0.4), 0.02 * 0.2);
+}
+
 // A hole in a cylinder changes little of its height: the strips at its sides carry the bending. A
 // tenth of the elastica's is more than the hole's share of the width's stiffness moves it.
 TEST(HybridBend, BendsASheetWithAHole) {
