@@ -22,12 +22,16 @@ REDUCTIONS = {"max": np.nanmax, "min": np.nanmin, "median": np.nanmedian, "mean"
 
 
 def rounded(value, digits):
-    """The number as a record keeps it; None where there is none."""
+    """The number as a record keeps it: None where there is none, a text where it is infinite, which JSON cannot say."""
+    if math.isinf(value):
+        return str(value)
     return float(f"{value:.{digits}g}") if math.isfinite(value) else None
 
 
 def present(value):
-    return math.nan if value is None else value
+    if value is None:
+        return math.nan
+    return float(value) if value in ("inf", "-inf") else value
 
 
 # From a run

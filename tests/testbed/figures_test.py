@@ -5,6 +5,7 @@ import contextlib
 import html
 import io
 import json
+import math
 import os
 import re
 import shutil
@@ -281,6 +282,12 @@ class PageOfAllRecords(Scratch):
         path.unlink()
         with self.assertRaisesRegex(RunFileError, f"^{path.parents[1]}: no published records$"):
             published.build(self.root)
+
+
+class Numbers(unittest.TestCase):
+    def test_of_records_may_be_infinite_or_none(self):
+        kept = json.loads(json.dumps([records.rounded(x, 3) for x in (math.inf, -math.inf, math.nan, 1.23456)]))
+        self.assertEqual([repr(records.present(x)) for x in kept], ["inf", "-inf", "nan", "1.23"])
 
 
 class Headlines(Scratch):
