@@ -92,12 +92,10 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
            .unit = "deg",
            .min = 1,
            .max = 45});
-  v.value(
-      "look_frames", o.look_frames,
-      {.doc = "in every so many frames there is a look at where rulings should be; between them "
-              "the structure stays as it is, unless the sheet strains",
-       .min = 1,
-       .max = 1000});
+  v.value("look_frames", o.look_frames,
+          {.doc = "frames from one look at rulings to the next, unless the sheet strains",
+           .min = 1,
+           .max = 1000});
   v.value("tracking_rate_deg", o.tracking_rate_deg,
           {.doc = "largest angle by which a ruling turns in a frame",
            .unit = "deg",

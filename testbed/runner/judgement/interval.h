@@ -9,4 +9,7 @@ struct Interval {
   double high = 0;
 };
 
+/// Resamples of every bootstrap.
+inline constexpr int kResamples = 2000;
+
 }  // namespace geoprior

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -51,7 +52,8 @@ double mean(std::span<const double> values) {
 
 Interval percentile_interval(double value, std::vector<double>& resampled) {
   std::sort(resampled.begin(), resampled.end());
-  return {value, resampled[kResamples / 40], resampled[kResamples - 1 - kResamples / 40]};
+  const std::size_t n = resampled.size();
+  return {value, resampled[n / 40], resampled[n - 1 - n / 40]};
 }
 
 Interval jackknife_interval(double value, std::span<const double> without) {

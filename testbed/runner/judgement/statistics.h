@@ -9,12 +9,9 @@
 
 namespace geoprior {
 
-/// Resamples of every bootstrap.
-inline constexpr int kResamples = 2000;
-
 double mean(std::span<const double> values);
 
-/// Value with the 95 % percentile interval of its `kResamples` resamples, which it sorts.
+/// Value with the 95 % percentile interval of its resamples, which it sorts.
 Interval percentile_interval(double value, std::vector<double>& resampled);
 
 /// Slope of the least-squares line through (x, y) with its 95 % t-interval, normal errors in y.

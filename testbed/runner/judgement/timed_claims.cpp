@@ -8,7 +8,6 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "testbed/runner/judgement/judgement.h"
-#include "testbed/runner/judgement/statistics.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 #include "testbed/runner/options/quantity.h"
 

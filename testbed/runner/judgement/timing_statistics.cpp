@@ -12,8 +12,6 @@ namespace geoprior {
 
 namespace {
 
-constexpr int kRatioResamples = 2000;
-
 /// Reorders `values`, which holds no NaN.
 double quantile_in_place(std::vector<double>& values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -53,7 +51,7 @@ Interval bootstrap_median(std::span<const double> values, std::uint64_t seed) {
   result.value = median(kept);
   if (kept.empty()) return {result.value, result.value, result.value};
   RandomStream random(seed, "bootstrap");
-  std::vector<double> medians(kRatioResamples);
+  std::vector<double> medians(kResamples);
   std::vector<double> sample(kept.size());
   for (double& of_sample : medians) {
     for (double& x : sample) x = kept[random.below(static_cast<std::uint32_t>(kept.size()))];

@@ -114,16 +114,18 @@ void describe(OptionVisitor& v, StudyTable& t) {
       "quantity", t.quantity,
       {.doc = "a name of the metric table, timing:<phase> or diagnostic:<name>", .required = true});
   v.value("of", t.of,
-          {.doc = "of within-spread: variant whose range is the yardstick; of matched: variant "
-                  "that is right; absent: `match` is an error"});
+          {.doc = "variant whose range is the yardstick (within-spread), or that is right "
+                  "(matched; absent: `match` is an error)"});
   v.value("against", t.against, {.doc = "a fact of the scene, or a swept key"});
   describe_choice(v, "finer", t.finer, kFiner,
                   {.doc = "x of the finer discretisation: a step is smaller, a count larger"});
   describe_choice(v, "reduce", t.reduce, kReductions, {.doc = "one number of all frames"});
-  v.value("match", t.match, {.doc = "of matched: the metric in which rivals are to be equal"});
+  v.value("match", t.match,
+          {.doc = "metric in which the rivals of a matched study are to be equal"});
   describe_choice(v, "match_reduce", t.match_reduce, kReductions,
                   {.doc = "one number of all frames of `match`"});
-  describe_list(v, "families", t.families, {.doc = "of matched: the rivals"});
+  describe_list(v, "families", t.families,
+                {.doc = "rivals of a matched study, each at several resolutions"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have what is asked"});
 }
 
