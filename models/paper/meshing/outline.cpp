@@ -168,18 +168,10 @@ Loop resampled_loop(const Loop& loop, double edge, const std::vector<Vector2d>& 
   return changed && result.size() > 2 ? result : loop;
 }
 
-bool is_simple(const Pattern& pattern) {
+template <class Check>
+bool passes(Check&& check) {
   try {
-    require_simple(pattern, "outline");
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-bool is_valid(const Sheet& sheet) {
-  try {
-    require_valid(sheet, "sheet");
+    check();
     return true;
   } catch (const Error&) {
     return false;
@@ -199,7 +191,8 @@ Pattern resampled(const Pattern& pattern, double edge, const std::vector<Vector2
     const bool holds = std::all_of(kept.begin(), kept.end(), [&](const Vector2d& p) {
       return contains(result, p, tolerance) || !contains(pattern, p, tolerance);
     });
-    if (holds && is_simple(result) && accepts(result)) return result;
+    if (holds && passes([&] { require_simple(result, "outline"); }) && accepts(result))
+      return result;
   }
   return pattern;
 }
@@ -217,7 +210,7 @@ Sheet with_outline(Sheet sheet, double edge) {
   Sheet tried = sheet;
   sheet.pattern = resampled(sheet.pattern, edge, kept, [&](const Pattern& pattern) {
     tried.pattern = pattern;
-    return is_valid(tried);
+    return passes([&] { require_valid(tried, "sheet"); });
   });
   return sheet;
 }
