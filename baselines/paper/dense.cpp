@@ -17,11 +17,6 @@ namespace {
 constexpr std::array<std::string_view, 4> kLayoutNames{"automatic", "structured", "equilateral",
                                                        "delaunay"};
 
-/// Edge length of so many equilateral triangles (m).
-double even_edge(const Pattern& pattern, int triangles) {
-  return std::sqrt(4 / std::sqrt(3.0) * signed_area(pattern) / triangles);
-}
-
 /// A mesh that only tears change: they are cut into its lattice.
 class UniformMesher final : public SheetMesher {
  public:
@@ -57,7 +52,7 @@ class UniformMesher final : public SheetMesher {
  private:
   void take_scene(const Sheet& sheet) {
     pattern_ = sheet.pattern;
-    const double edge = even_edge(sheet.pattern, options_.triangles);
+    const double edge = equilateral_edge(signed_area(sheet.pattern), options_.triangles);
     require_lattice(sheet.pattern, edge);
     anchors_ = handle_points(sheet, edge);
     if (!sheet.toughness.tears()) return;
@@ -104,7 +99,7 @@ void describe(OptionVisitor& v, DenseOptions& options) {
 }
 
 std::unique_ptr<Process> make_dense_sheet(const Sheet& sheet, const DenseOptions& options) {
-  const double edge = even_edge(sheet.pattern, options.triangles);
+  const double edge = equilateral_edge(signed_area(sheet.pattern), options.triangles);
   return std::make_unique<SheetProcess>(with_outline(sheet, edge), options.stepper,
                                         std::make_unique<UniformMesher>(options));
 }

@@ -34,10 +34,6 @@ constexpr double kJitter = 0.3;
 /// Radius within which points are nearer to each other about a tip, in edge lengths.
 constexpr double kRefined = 2.5;
 
-double equilateral_edge(double area, double triangles) {
-  return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
-}
-
 double perimeter(const Pattern& pattern) {
   double sum = 0;
   each_edge(pattern, [&](const Vector2d& a, const Vector2d& b) { sum += (b - a).norm(); });
@@ -323,6 +319,10 @@ std::vector<Vector2d> distinct(const std::vector<Vector2d>& points, double toler
 }
 
 }  // namespace
+
+double equilateral_edge(double area, double triangles) {
+  return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
+}
 
 void require_lattice(const Pattern& pattern, double edge) {
   const Vector2d size = bounding_box(pattern).sizes();

@@ -33,6 +33,9 @@ ShellMesh lattice_mesh(const Pattern& pattern, double edge, UniformLayout layout
 double uniform_edge(const Pattern& pattern, int triangles, UniformLayout layout,
                     const std::vector<Eigen::Vector2d>& anchors, std::uint64_t seed);
 
+/// Edge length (m) of so many equilateral triangles that cover an area (m^2).
+double equilateral_edge(double area, double triangles);
+
 /// Refuses edges so short that the lattice over the pattern's box, or its border, has more points
 /// than a sheet can: before any is made.
 /// @throws Error  naming the pattern and the number of points

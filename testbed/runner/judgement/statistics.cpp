@@ -50,6 +50,11 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double largest_over_smallest(std::span<const double> values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *most / *least;
+}
+
 Interval percentile_interval(double value, std::vector<double>& resampled) {
   std::sort(resampled.begin(), resampled.end());
   const std::size_t n = resampled.size();
@@ -104,6 +109,23 @@ Interval spread_with_interval(std::span<const double> values, RandomStream rando
     spreads.push_back(standard_deviation(sample));
   }
   return percentile_interval(standard_deviation(values), spreads);
+}
+
+Interval range_with_interval(const std::vector<std::vector<double>>& samples,
+                             const std::function<double(std::vector<double>)>& reduce,
+                             RandomStream random) {
+  const auto of = [&](const std::vector<std::vector<double>>& all) {
+    std::vector<double> numbers;
+    for (const std::vector<double>& sample : all) numbers.push_back(reduce(sample));
+    return largest_over_smallest(numbers);
+  };
+  std::vector<std::vector<double>> drawn(samples.size());
+  std::vector<double> ranges;
+  for (int r = 0; r < kResamples; ++r) {
+    for (std::size_t i = 0; i < samples.size(); ++i) draw(samples[i], random, drawn[i]);
+    ranges.push_back(of(drawn));
+  }
+  return percentile_interval(of(samples), ranges);
 }
 
 Interval median_distance_with_interval(std::span<const double> values,

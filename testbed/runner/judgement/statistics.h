@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,8 @@
 namespace geoprior {
 
 double mean(std::span<const double> values);
+
+double largest_over_smallest(std::span<const double> values);
 
 /// Value with the 95 % percentile interval of its resamples, which it sorts.
 Interval percentile_interval(double value, std::vector<double>& resampled);
@@ -22,6 +25,12 @@ Interval slope_with_interval(std::span<const double> x, std::span<const double> 
 /// Sample standard deviation (n - 1) with its 95 % percentile bootstrap interval (2000 resamples).
 /// @throws Error  with fewer than two values
 Interval spread_with_interval(std::span<const double> values, RandomStream random);
+
+/// Largest over smallest of the samples, each reduced to one number, with its 95 % percentile
+/// bootstrap interval (2000 resamples of each sample by itself).
+Interval range_with_interval(const std::vector<std::vector<double>>& samples,
+                             const std::function<double(std::vector<double>)>& reduce,
+                             RandomStream random);
 
 /// How far apart the medians of two samples are, |median(values) - median(yardstick)|, over half
 /// the range of `yardstick`: at most 1 means that they agree within its spread. The 95 % percentile

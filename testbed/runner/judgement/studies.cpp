@@ -144,10 +144,10 @@ void draw_frames(const CaseRecord& in, const StudySpec& study, Matched& all) {
   if (!all.truth.empty()) all.truth.assign(all.method.cost.size(), all.truth.front());
 }
 
-/// The value: of all cases that have all variants; x: errors of the variant and of all members,
-/// family after family; y: their costs.
-Interval add_matched(StudyRecord& record, const StudySpec& study,
-                     const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+/// Value and interval: of all cases that have all variants; x: errors of the variant and of all
+/// members, family after family; y: their costs.
+void add_matched(StudyRecord& record, const StudySpec& study,
+                 const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
   Matched all;
   all.cost = study.reduce == Reduction::mean ? Reduction::mean : Reduction::median;
   for (const auto& family : study.families) all.families.emplace_back(family.size());
@@ -158,7 +158,7 @@ Interval add_matched(StudyRecord& record, const StudySpec& study,
     all = std::move(next);
     kept.push_back(in);
   }
-  if (kept.empty()) return {};
+  if (kept.empty()) return;
   const auto add = [&](const Priced& priced) {
     record.x.push_back(error_of(priced, all.truth));
     record.y.push_back(cost_of(priced, all.cost));
@@ -167,40 +167,31 @@ Interval add_matched(StudyRecord& record, const StudySpec& study,
   for (const auto& family : all.families) std::for_each(family.begin(), family.end(), add);
   const bool one_number = study.reduce == Reduction::median || study.reduce == Reduction::mean;
   if (kept.size() == 1 && is_timed(study) && one_number) draw_frames(*kept.front(), study, all);
-  return matched_with_interval(all, RandomStream(seed, "study " + study.name));
-}
-
-double largest_over_smallest(const std::vector<double>& values) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return *most / *least;
+  const Interval ratio = matched_with_interval(all, RandomStream(seed, "study " + study.name));
+  record.value = ratio.value;
+  record.low = ratio.low;
+  record.high = ratio.high;
 }
 
 /// Of times with the percentile interval over the frames of each case; what else is given has no
 /// chance in it, and no interval.
 Interval range_of(const StudySpec& study, const StudyRecord& record,
                   const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
-  const double value = largest_over_smallest(record.y);
-  if (!is_timed(study)) return {value, std::nan(""), std::nan("")};
+  if (!is_timed(study)) return {largest_over_smallest(record.y), std::nan(""), std::nan("")};
   std::vector<std::vector<double>> times;
   for (const CaseRecord* in : cases) {
     if (variant_in(*in, study.variant) != nullptr)
       times.push_back(frame_times(*in, study.variant, study));
   }
-  RandomStream random(seed, "study " + study.name);
-  std::vector<double> resampled;
-  for (int r = 0; r < kResamples; ++r) {
-    std::vector<double> of_cases;
-    for (const std::vector<double>& frames : times) {
-      std::vector<double> sample(frames.size());
-      for (double& x : sample) x = frames[random.below(static_cast<std::uint32_t>(frames.size()))];
-      of_cases.push_back(reduced(std::move(sample), study.reduce));
-    }
-    resampled.push_back(largest_over_smallest(of_cases));
-  }
-  return percentile_interval(value, resampled);
+  return range_with_interval(
+      times, [&](std::vector<double> frames) { return reduced(std::move(frames), study.reduce); },
+      RandomStream(seed, "study " + study.name));
 }
 
-Interval interval_of(const StudySpec& study, const StudyRecord& record, std::uint64_t seed) {
+Interval interval_of(const StudySpec& study, const StudyRecord& record,
+                     const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
+  if (study.kind == StudyKind::matched) return {record.value, record.low, record.high};
+  if (study.kind == StudyKind::range) return range_of(study, record, cases, seed);
   if (study.kind == StudyKind::pooled) return pooled_interval(record);
   if (study.kind == StudyKind::spread) {
     return spread_with_interval(record.y, RandomStream(seed, "study " + study.name));
@@ -283,11 +274,11 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
     made.kind = text_of(study.kind);
     made.quantity = study.quantity;
     const std::vector<const CaseRecord*> cases = cases_of(study, record);
-    Interval interval;
+    const std::uint64_t seed = record.cases.front().seed;
     if (study.kind == StudyKind::pooled) {
       add_pooled(made, study, cases);
     } else if (study.kind == StudyKind::matched) {
-      interval = add_matched(made, study, cases, record.cases.front().seed);
+      add_matched(made, study, cases, seed);
     } else {
       for (const CaseRecord* in : cases) add_point(made, study, *in);
     }
@@ -295,12 +286,7 @@ std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRec
       throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
                   "study '" + study.name + "'", needed_by(study));
     }
-    const std::uint64_t seed = record.cases.front().seed;
-    if (study.kind == StudyKind::range) {
-      interval = range_of(study, made, cases, seed);
-    } else if (study.kind != StudyKind::matched) {
-      interval = interval_of(study, made, seed);
-    }
+    const Interval interval = interval_of(study, made, cases, seed);
     made.value = interval.value;
     made.low = interval.low;
     made.high = interval.high;
