@@ -1,11 +1,40 @@
 #include "solvers/paper/hybrid.h"
 
+#include <algorithm>
+
 #include "models/paper/meshing/outline.h"
 #include "solvers/paper/meshing/hybrid_mesher.h"
 
 namespace geoprior::paper {
 
-std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& options) {
+namespace {
+
+/// Longest edges on flat ground and of the guide, in the mean width of the sheet, and the least
+/// part of what was asked for: an outline of notches makes a wide sheet look narrow.
+constexpr double kOfWidth = 0.6;
+constexpr double kLeastSize = 0.25;
+
+/// Twice the area over the length of the outline: of a long band its width.
+double mean_width(const Pattern& pattern) {
+  double length = 0;
+  each_loop_edge(pattern, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    length += (b - a).norm();
+  });
+  return 2 * signed_area(pattern) / length;
+}
+
+/// A band has room for few edges across: a mesh of longer ones bends in pleats.
+HybridOptions fitted(HybridOptions options, const Pattern& pattern) {
+  const double most = kOfWidth * mean_width(pattern);
+  for (double* size : {&options.flat_size, &options.guide_edge})
+    *size = std::clamp(most, kLeastSize * *size, *size);
+  return options;
+}
+
+}  // namespace
+
+std::unique_ptr<Process> make_hybrid_sheet(const Sheet& sheet, const HybridOptions& given) {
+  const HybridOptions options = fitted(given, sheet.pattern);
   return std::make_unique<SheetProcess>(with_outline(sheet, options.flat_size), options.stepper,
                                         std::make_unique<HybridMesher>(options));
 }

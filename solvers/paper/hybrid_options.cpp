@@ -96,6 +96,12 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
           {.doc = "frames from one look at rulings to the next, unless the sheet strains",
            .min = 1,
            .max = 1000});
+  v.value(
+      "jump_share", o.jump_share,
+      {.doc = "farthest that a change of the mesh may move the sheet, in the way that the sheet "
+              "went since the last look",
+       .min = 0,
+       .max = 1e6});
   v.value("tracking_rate_deg", o.tracking_rate_deg,
           {.doc = "largest angle by which a ruling turns in a frame",
            .unit = "deg",

@@ -32,7 +32,8 @@ struct HybridOptions {
   bool energy_test = true;
   /// In every so many frames there is a look at where rulings should be; between them the structure
   /// stays, unless the sheet strains.
-  int look_frames = 1;
+  int look_frames = 5;
+  double jump_share = 0.4;
   bool tracking = true;
   double guide_edge = 0.018;  ///< m
   double follow_angle_deg = 15;

@@ -92,10 +92,11 @@ class AdaptiveMesher final : public SheetMesher {
     return true;
   }
 
-  void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+  bool settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
               RunContext& context) override {
     const Phase phase(context, "settle");
     last_.settle_steps = paper::settle(sheet, options_.settle, stepper, state);
+    return true;
   }
 
   void annotate(const ShellState& state, Frame& frame) const override {

@@ -121,8 +121,9 @@ class SheetFrames final : public FrameModel {
     const double energy = stepper_.energies(state_).strain();
     if (!mesher_.adapt(sheet_, stepper_, state_, context)) return;
     analyse(context);
-    mesher_.settle(sheet_, stepper_, state_, context);
-    if (!goes_on(energy, dt, context) && mesher_.take_back(state_)) analyse(context);
+    const bool stays =
+        mesher_.settle(sheet_, stepper_, state_, context) && goes_on(energy, dt, context);
+    if (!stays && mesher_.take_back(sheet_, state_, context)) analyse(context);
   }
 
   void record(int number, FrameSink& sink, RunContext& /*context*/) override {

@@ -23,11 +23,16 @@ class SheetMesher {
                      RunContext& context) = 0;
   /// Called after a change of the connectivity, once the stepper has taken it up: takes back what
   /// the change has strained. Marks its own phases.
-  virtual void settle(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
-                      RunContext& /*context*/) {}
-  /// Undoes the last `adapt`, from whose mesh the sheet cannot go on.
+  /// @return  false: the change is to be taken back
+  virtual bool settle(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
+                      RunContext& /*context*/) {
+    return true;
+  }
+  /// Undoes the last `adapt`, which moves the sheet too far or from whose mesh it cannot go on.
   /// @return  false: the state stays as it is
-  virtual bool take_back(ShellState& /*state*/) { return false; }
+  virtual bool take_back(const Sheet& /*sheet*/, ShellState& /*state*/, RunContext& /*context*/) {
+    return false;
+  }
   /// Adds parts, arrays, tables and diagnostics of its own ("rulings", "singular_points" …).
   virtual void annotate(const ShellState& state, Frame& frame) const = 0;
   /// Everything that `adapt` and `annotate` remember from one frame to the next, for checkpoints.

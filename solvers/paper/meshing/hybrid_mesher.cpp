@@ -45,6 +45,10 @@ constexpr int kPatientIterations = 30;
 constexpr double kMostRulings = 1e6;
 /// Frames between two looks at whether a singular point is still needed.
 constexpr int kReview = 5;
+/// Strain, in that which the last look could not mend, at which the next is not waited for.
+constexpr double kWorse = 2;
+/// Farthest that a change of the mesh may move the sheet, in seeding distances.
+constexpr double kFarthest = 0.25;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -129,10 +133,11 @@ void HybridMesher::remesh() {
 ShellState HybridMesher::start(const Sheet& sheet, RunContext& context) {
   structure_ = {};
   draws_ = 0;
+  left_strain_ = 0;
   rejected_ = 0;
   unborn_ = 0;
   frames_ = 0;
-  since_look_ = 0;
+  looks_ = LookTimer(options_.look_frames);
   settle_steps_ = 0;
   tearing_.reset();
   take_scene(sheet);
@@ -205,7 +210,7 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
 
 bool HybridMesher::track(RulingEditor& editor, PropagationReport& events) {
   const bool refined = refine_rulings(folds_, options_, editor);
-  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings, since_look_);
+  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings, looked_over_);
   return refined || followed;
 }
 
@@ -266,10 +271,11 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   }
   meshes_made_ = 0;
   settle_steps_ = 0;
+  strained_ = false;
   ++frames_;
-  ++since_look_;
+  looks_.pass_frame();
   std::vector<DemandGroup> groups;
-  const bool looks = since_look_ >= options_.look_frames;
+  const bool looks = looks_.is_due();
   {
     const Phase phase(context, "analyse");
     attend(sheet, stepper, state);
@@ -279,16 +285,17 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   const Snapshot& before = *before_;
   if (!looks) {
     keep(sheet, 1, state, context);
-    if (!options_.projection || projection_.strain_after <= options_.accepted_strain) return false;
+    const bool worse = projection_.strain_after > kWorse * left_strain_;
+    if (!strains() || !(looks_.may_be_early() || worse)) return false;
     restore(before, state);
     const Phase phase(context, "analyse");
     groups = analyse(sheet, state, context);
   }
+  looked_over_ = looks_.since();
+  looks_.looked();
   const bool reviews =
-      options_.energy_test && frames_ / kReview != (frames_ - since_look_) / kReview;
-  const bool changed_by_look = look(sheet, groups, reviews, before, state, context);
-  since_look_ = 0;
-  return changed_by_look;
+      options_.energy_test && frames_ / kReview != (frames_ - looked_over_) / kReview;
+  return look(sheet, groups, reviews, before, state, context);
 }
 
 /// Changes the structure as the groups ask, where the sheet can follow.
@@ -308,15 +315,15 @@ bool HybridMesher::look(const Sheet& sheet, const std::vector<DemandGroup>& grou
   const bool changed = events_.changed;
   if (changed) restore(before, state);
   keep(sheet, 1, state, context);
-  if (!options_.projection || projection_.strain_after <= options_.accepted_strain)
-    return reviews && review_points(sheet, state, context);
+  if (!strains()) return reviews && review_points(sheet, state, context);
   return last_resort(sheet, groups, before, changed ? &tried : nullptr, state, context);
 }
 
-bool HybridMesher::take_back(ShellState& state) {
+bool HybridMesher::take_back(const Sheet& sheet, ShellState& state, RunContext& context) {
   if (!before_) return false;
   restore(*before_, state);
-  events_ = {};
+  keep(sheet, 1, state, context);
+  looks_.in_vain();
   ++rejected_;
   return true;
 }
@@ -361,7 +368,7 @@ bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunConte
   RulingEditor pen = editor();
   pen.remove_point(static_cast<int>(unyielded - points.begin()));
   int new_rulings = 0;
-  if (field_) follow_bending(*field_, options_, pen, new_rulings, since_look_);
+  if (field_) follow_bending(*field_, options_, pen, new_rulings, looked_over_);
   remesh();
   carry(sheet, state, structure_.singular_points.size(), context);
   if (options_.projection) project(sheet, kRemeshedIterations, state, context);
@@ -396,6 +403,11 @@ bool HybridMesher::try_change(const Sheet& sheet, const std::vector<DemandGroup>
   return false;
 }
 
+/// Whether the projection has left more strain than is accepted.
+bool HybridMesher::strains() const {
+  return options_.projection && projection_.strain_after > options_.accepted_strain;
+}
+
 /// Goes on with the structure as it is.
 void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context) {
   events_ = {};
@@ -407,8 +419,12 @@ void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunCo
 bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                                const Snapshot& before, const Snapshot* tried, ShellState& state,
                                RunContext& context) {
+  strained_ = true;
   keep(sheet, options_.last_iterations, state, context);
-  if (projection_.strain_after <= options_.accepted_strain || tried == nullptr) return false;
+  if (!strains()) return false;
+  looks_.in_vain();
+  left_strain_ = projection_.strain_after;
+  if (tried == nullptr) return false;
   Snapshot best = snapshot(state);
   const auto improve = [&](const Snapshot& other) {
     if (other.projection.strain_after < best.projection.strain_after) best = other;
@@ -425,6 +441,7 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
   if (projection_.strain_after > kUnacceptableStrain) {
     project(sheet, kPatientIterations, state, context);
   }
+  left_strain_ = projection_.strain_after;
   return events_.changed;
 }
 
@@ -458,11 +475,24 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
       state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
+/// Whether a change of the mesh moves the sheet farther than it went itself since the last look:
+/// such a change is worse than none, whatever it mends. A sheet at rest keeps its mesh. Not asked
+/// of singular points, which are weighed by energy, and of a sheet that strains without the change.
+bool HybridMesher::moves_too_far(const Sheet& sheet, const ShellState& state) const {
+  if (!before_ || strained_ || events_.new_singular_points > 0) return false;
+  const ShellState carried = transfer_state(before_->state, state.mesh);
+  const double moved = (state.x - carried.x).rowwise().norm().maxCoeff();
+  const double speed = before_->state.v.rowwise().norm().maxCoeff();
+  const double way = speed * std::min(looked_over_, options_.look_frames) * sheet.frame_interval;
+  return moved > std::min(kFarthest * options_.seeding_distance, options_.jump_share * way);
+}
+
 /// The projection puts the new mesh where it is isometric, not where it is at rest.
-void HybridMesher::settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+bool HybridMesher::settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                           RunContext& context) {
   const Phase phase(context, "settle");
   settle_steps_ = paper::settle(sheet, options_.settle, stepper, state);
+  return !moves_too_far(sheet, state);
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {
@@ -484,10 +514,11 @@ void HybridMesher::save(StateWriter& out) const {
   write_structure(structure_, out);
   if (tearing_) tearing_->save(out);
   out.number(draws_);
+  out.number(left_strain_);
   out.number(rejected_);
   out.number(unborn_);
   out.number(frames_);
-  out.number(since_look_);
+  looks_.save(out);
 }
 
 void HybridMesher::load(const Sheet& sheet, StateReader& in) {
@@ -495,10 +526,11 @@ void HybridMesher::load(const Sheet& sheet, StateReader& in) {
   take_scene(sheet);
   if (tearing_) tearing_->load(in);
   draws_ = in.number<std::uint64_t>();
+  left_strain_ = in.number<double>();
   rejected_ = in.number<int>();
   unborn_ = in.number<int>();
   frames_ = in.number<int>();
-  since_look_ = in.number<int>();
+  looks_.load(in);
   meshed_ = false;
 }
 

@@ -7,6 +7,7 @@
 #include "models/paper/sheet/process.h"
 #include "models/paper/tear/growth.h"
 #include "solvers/paper/hybrid_options.h"
+#include "solvers/paper/meshing/look_timer.h"
 #include "solvers/paper/meshing/ruling_editor.h"
 #include "solvers/paper/meshing/ruling_mesh.h"
 #include "solvers/paper/sheet/propagation.h"
@@ -18,15 +19,16 @@ namespace geoprior::paper {
 /// The geometric layer as a mesher of the common loop.
 class HybridMesher final : public SheetMesher {
  public:
-  explicit HybridMesher(const HybridOptions& options) : options_(options) {}
+  explicit HybridMesher(const HybridOptions& options)
+      : options_(options), looks_(options.look_frames) {}
 
   [[nodiscard]] ShellState start(const Sheet& sheet, RunContext& context) override;
   void stepped(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                RunContext& context) override;
   bool adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
              RunContext& context) override;
-  bool take_back(ShellState& state) override;
-  void settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
+  bool take_back(const Sheet& sheet, ShellState& state, RunContext& context) override;
+  bool settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
               RunContext& context) override;
   void annotate(const ShellState& state, Frame& frame) const override;
   void save(StateWriter& out) const override;
@@ -68,6 +70,7 @@ class HybridMesher final : public SheetMesher {
             const Snapshot& before, ShellState& state, RunContext& context);
   bool try_change(const Sheet& sheet, const std::vector<DemandGroup>& groups, bool tracking,
                   int effort, const Snapshot& before, ShellState& state, RunContext& context);
+  [[nodiscard]] bool strains() const;
   void keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
   bool last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                    const Snapshot& before, const Snapshot* tried, ShellState& state,
@@ -77,6 +80,7 @@ class HybridMesher final : public SheetMesher {
   bool review_points(const Sheet& sheet, ShellState& state, RunContext& context);
   void carry(const Sheet& sheet, ShellState& state, std::size_t old_points,
              RunContext& context) const;
+  [[nodiscard]] bool moves_too_far(const Sheet& sheet, const ShellState& state) const;
   void project(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
 
   HybridOptions options_;
@@ -98,9 +102,12 @@ class HybridMesher final : public SheetMesher {
   int settle_steps_ = 0;  ///< in this frame
   int meshes_made_ = 0;   ///< in this frame, of changes taken back too
   int frames_ = 0;        ///< so far
-  int since_look_ = 0;    ///< frames
-  int unborn_ = 0;        ///< singular points that were not worth their energy, so far
-  int rejected_ = 0;      ///< changes of the structure that the sheet could not follow, so far
+  LookTimer looks_;
+  int looked_over_ = 0;     ///< frames that the last look came after
+  bool strained_ = false;   ///< the last look found the sheet strained without a change
+  double left_strain_ = 0;  ///< by the last look that could not mend it
+  int unborn_ = 0;          ///< singular points that were not worth their energy, so far
+  int rejected_ = 0;        ///< changes of the structure that the sheet could not follow, so far
 };
 
 }  // namespace geoprior::paper

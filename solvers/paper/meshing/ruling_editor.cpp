@@ -40,6 +40,9 @@ RulingEditor::RulingEditor(const Pattern& pattern, const std::vector<Vector2d>& 
       same_(1e-9 * width(pattern)) {
   for (const std::vector<Vector2d>& cut : pattern.cuts)
     corners_.insert(corners_.end(), cut.begin(), cut.end());
+  for (const Vector2d& p : anchors_) {
+    if (nearest_on_border(pattern_, p).distance <= same_) border_anchors_.push_back(p);
+  }
 }
 
 RulingHit RulingEditor::propagate(const Vector2d& origin, const Vector2d& direction,
@@ -157,38 +160,28 @@ bool RulingEditor::fits(const Ruling& ruling, const std::vector<bool>& ignored) 
   return true;
 }
 
-std::vector<Vector2d> RulingEditor::border_nodes() const {
-  std::vector<Vector2d> nodes = corners_;
-  const auto add = [&](const Vector2d& p) {
-    if (std::none_of(nodes.begin(), nodes.end(),
-                     [&](const Vector2d& q) { return (p - q).norm() <= same_; })) {
-      nodes.push_back(p);
-    }
+std::optional<Vector2d> RulingEditor::node_near(const Vector2d& p, double within) const {
+  std::optional<Vector2d> nearest;
+  const auto offer = [&](const Vector2d& node) {
+    const double distance = (node - p).norm();
+    if (distance >= within) return;
+    within = distance;
+    nearest = node;
   };
-  for (const Vector2d& p : anchors_) {
-    if (nearest_on_border(pattern_, p).distance <= same_) add(p);
-  }
+  for (const Vector2d& corner : corners_) offer(corner);
+  for (const Vector2d& anchor : border_anchors_) offer(anchor);
   for (const SingularPoint& s : structure_.singular_points) {
-    if (s.on_border) add(s.position);
+    if (s.on_border) offer(s.position);
   }
   for (const Ruling& r : structure_.rulings) {
-    if (!r.singular_a) add(r.a);
-    if (!r.singular_b) add(r.b);
+    if (!r.singular_a) offer(r.a);
+    if (!r.singular_b) offer(r.b);
   }
-  return nodes;
+  return nearest;
 }
 
 Vector2d RulingEditor::snapped(const Vector2d& border_point) const {
-  double nearest = bounds_.gap;
-  Vector2d result = border_point;
-  for (const Vector2d& node : border_nodes()) {
-    const double distance = (node - border_point).norm();
-    if (distance < nearest) {
-      nearest = distance;
-      result = node;
-    }
-  }
-  return result;
+  return node_near(border_point, bounds_.gap).value_or(border_point);
 }
 
 std::optional<Vector2d> RulingEditor::border_end(const Vector2d& centre, const Vector2d& direction,

@@ -70,8 +70,10 @@ class RulingEditor {
   /// Removes a singular point and the rulings that end in it.
   void remove_point(int singular_point);
 
-  /// Corners and anchors on the border, and where rulings and singular points touch it.
-  [[nodiscard]] std::vector<Eigen::Vector2d> border_nodes() const;
+  /// Nearest, if nearer than `within`, of the corners and the anchors on the border and of where
+  /// rulings and singular points touch it.
+  [[nodiscard]] std::optional<Eigen::Vector2d> node_near(const Eigen::Vector2d& p,
+                                                         double within) const;
   [[nodiscard]] const Bounds& bounds() const { return bounds_; }
   [[nodiscard]] const Pattern& pattern() const { return pattern_; }
   [[nodiscard]] const std::vector<Eigen::Vector2d>& anchors() const { return anchors_; }
@@ -91,6 +93,7 @@ class RulingEditor {
   const Pattern& pattern_;
   std::vector<Eigen::Vector2d> corners_;  ///< of the pattern
   const std::vector<Eigen::Vector2d>& anchors_;
+  std::vector<Eigen::Vector2d> border_anchors_;  ///< of them
   Bounds bounds_;
   PaperStructure& structure_;
   double same_;

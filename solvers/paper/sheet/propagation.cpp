@@ -146,7 +146,7 @@ std::optional<Vector2d> settled(Vector2d p, const RulingEditor& editor,
   if (const auto anchor = nearest_place(inside, p, options.singular_spacing * s)) {
     p = *anchor;
   } else if (border.distance < s / 2) {
-    p = nearest_place(editor.border_nodes(), border.point, s / 2).value_or(border.point);
+    p = editor.node_near(border.point, s / 2).value_or(border.point);
   }
   if (!contains(editor.pattern(), p, editor.same())) return std::nullopt;
   if (near_sharp_corner(editor.pattern(), p, s)) return std::nullopt;

@@ -151,7 +151,8 @@ inline void run_hybrid(const Sheet& sheet, const HybridOptions& options, std::ui
     if (look_before) look_before(mesher, state);
     if (mesher.adapt(sheet, stepper, state, context)) {
       stepper.set_mesh(state);
-      mesher.settle(sheet, stepper, state, context);
+      const bool stays = mesher.settle(sheet, stepper, state, context);
+      if (!stays && mesher.take_back(sheet, state, context)) stepper.set_mesh(state);
     }
     look(mesher, state);
   }

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "core/parallel.h"
+#include "models/paper/meshing/transfer.h"
 #include "solvers/paper/hybrid.h"
 #include "solvers/paper/sheet/invariants.h"
 #include "tests/paper/contact/plane_shapes.h"
 #include "tests/paper/sheet/hybrid_fixture.h"
 #include "tests/support/long_tests.h"
+#include "tests/support/recording.h"
 
 namespace geoprior::paper {
 namespace {
@@ -88,6 +91,72 @@ TEST(HybridBend, LooksInEveryFourthFrameOnly) {
   EXPECT_NEAR(end.x.col(2).cwiseAbs().maxCoeff(), 0.2 * relative_elastica_height(0.4), 0.02 * 0.2);
 }
 
+/// What changes of the mesh do to a sheet that is pinched, and then held for two seconds.
+struct Changes {
+  int frames = 0, at_rest = 0;
+  double farthest = 0;    ///< that one moved the sheet (m)
+  double most_share = 0;  ///< of it in the way that the sheet went in five frames before
+};
+Changes changes_of_pinched_sheet(const HybridOptions& options) {
+  Sheet sheet = pinched_sheet();
+  sheet.duration = 4;
+  Changes changes;
+  std::vector<Ruling> before;
+  std::size_t points = 0;
+  ShellState found;
+  run_hybrid(
+      sheet, options, 1,
+      [&](const HybridMesher& mesher, const ShellState& state) {
+        const std::vector<Ruling>& rulings = mesher.structure().rulings;
+        const bool same =
+            std::equal(rulings.begin(), rulings.end(), before.begin(), before.end(),
+                       [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
+        before = rulings;
+        const bool born = std::exchange(points, mesher.structure().singular_points.size()) !=
+                          mesher.structure().singular_points.size();
+        if (same || born) return;
+        ++changes.frames;
+        if (state.time > 2.6) ++changes.at_rest;
+        const ShellState carried = transfer_state(found, state.mesh);
+        const double moved = (state.x - carried.x).rowwise().norm().maxCoeff();
+        const double way = found.v.rowwise().norm().maxCoeff() * 5 * sheet.frame_interval;
+        changes.farthest = std::max(changes.farthest, moved);
+        changes.most_share = std::max(changes.most_share, moved / way);
+      },
+      [&](const HybridMesher&, const ShellState& state) { found = state; });
+  return changes;
+}
+
+// A change of the mesh that moves the sheet farther than it goes by itself is what one sees of it.
+TEST(HybridBend, MovesTheSheetLessByItsChangesThanTheHandsDo) {
+  const HybridOptions options;
+  const Changes changes = changes_of_pinched_sheet(options);
+  EXPECT_GT(changes.frames, 0);
+  EXPECT_EQ(changes.at_rest, 0);
+  EXPECT_LE(changes.most_share, options.jump_share);
+  EXPECT_LE(changes.farthest, 0.25 * options.seeding_distance);
+  HybridOptions restless;
+  restless.jump_share = 1e6;
+  EXPECT_GT(changes_of_pinched_sheet(restless).most_share, options.jump_share);
+}
+
+// An edge of the default length crosses a band of 18 mm: without room for vertices between its
+// sides the band bends in pleats.
+TEST(HybridBend, HasVerticesBetweenTheSidesOfABand) {
+  Sheet sheet = bent_sheet();
+  sheet.pattern = rectangle_pattern(0.2, 0.018);
+  sheet.handles = {
+      edge_handle("left", {-0.1, -0.009}, {-0.1, 0.009}, {{0, {0, 0, 0}}, {1, {0.04, 0, 0}}}),
+      edge_handle("right", {0.1, -0.009}, {0.1, 0.009}, {{0, {0, 0, 0}}, {1, {-0.04, 0, 0}}})};
+  test::Recording recording;
+  RunContext context(1);
+  make_hybrid_sheet(sheet, {})->run(recording, context, {});
+  const NamedArray* pattern = recording.frames.front().parts.at("surface").find_array("pattern");
+  ASSERT_NE(pattern, nullptr);
+  const auto inside = (pattern->values.col(1).array().abs() < 0.008).count();
+  EXPECT_GE(inside, 15);
+}
+
 // A hole in a cylinder changes little of its height: the strips at its sides carry the bending. A
 // tenth of the elastica's is more than the hole's share of the width's stiffness moves it.
 TEST(HybridBend, BendsASheetWithAHole) {
@@ -153,6 +222,7 @@ Pinched pinched(double threshold) {
   options.test = CompressionTest::threshold;
   options.compression_threshold = threshold;
   options.energy_test = false;
+  options.look_frames = 1;  // the compression is looked for in every frame here too
   Pinched result;
   run_hybrid(
       pinched_sheet(), options, 1,
@@ -251,8 +321,9 @@ TEST(HybridProcess, GoesOnFromACheckpointAsIfItHadNotStopped) {
     void artifact(Artifact) override {}
     void checkpoint(const State& state) override { states.push_back(state); }
   };
-  constexpr std::size_t kFrames = 10;
-  const Sheet sheet = wandering_sheet(1, kFrames);
+  constexpr std::size_t kFrames = 54;  // the middle lies between two looks
+  Sheet sheet = pinched_sheet();
+  sheet.duration = sheet.frame_time(kFrames);
   Sink whole, again, rest;
   RunContext context(1);
   make_hybrid_sheet(sheet, {})->run(whole, context, {});

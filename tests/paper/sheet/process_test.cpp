@@ -119,7 +119,7 @@ class FoldingMesher final : public SheetMesher {
     state.x.row(t[1]) = state.x.row(t[2]);
     return true;
   }
-  bool take_back(ShellState& state) override {
+  bool take_back(const Sheet& /*sheet*/, ShellState& state, RunContext& /*context*/) override {
     ++taken_back_;
     if (gives_back_) state = before_;
     return gives_back_;
