@@ -17,6 +17,7 @@ from pathlib import Path
 
 import citations
 import claimed
+import error_time
 import findings
 import pages
 import pictures
@@ -68,6 +69,7 @@ def check(root):
     texts, sources = page_texts(root), pages.read_sources(root)
     found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
     found += unshown(texts, sources.records) + pictures.problems(texts, sources.records, root)
+    found += error_time.problems(root, sources.records)
     found += citations.problems(root) + findings.problems(texts)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
@@ -80,6 +82,8 @@ def rewrite(root):
         if made != text:
             runfile.write_atomically(root / page, made)
             print(page)
+    for path in error_time.write(root, sources.records):
+        print(path)
     return 0
 
 

@@ -4,6 +4,7 @@ the pages show (docs/file-formats.md). Made from a run by `record_of`, read by `
 import json
 import math
 import re
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -122,6 +123,17 @@ def published_claim(claim):
             **{name: value for name, value in beside.items() if value not in ("", None)}}
 
 
+def published_study(study, run):
+    """Value and interval; of a comparison at equal error also what was compared, errors and costs."""
+    made = {"kind": study.kind, "quantity": study.quantity,
+            **{key: rounded(getattr(study, key), 4) for key in ("value", "low", "high")}}
+    if study.kind == "matched":
+        spec = next(s for s in tomllib.loads(run.experiment)["study"] if s["name"] == study.name)
+        made["members"] = [[spec["variant"]], *(family["variants"] for family in spec["families"])]
+        made |= {key: [rounded(value, 4) for value in getattr(study, key)] for key in ("x", "y")}
+    return made
+
+
 def record_of(run, quoted):
     """What the run publishes, as the JSON object that its file holds."""
     if run.quick:
@@ -137,8 +149,7 @@ def record_of(run, quoted):
         "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
         "failures": tables.failures(run), "cases": [case.name for case in run.cases],
         "claims": [published_claim(c) for c in run.claims],
-        "studies": {s.name: {"kind": s.kind, "quantity": s.quantity, "value": rounded(s.value, 4),
-                             "low": rounded(s.low, 4), "high": rounded(s.high, 4)} for s in run.studies},
+        "studies": {s.name: published_study(s, run) for s in run.studies},
         "times": {case.name: times_of_case(case) for case in run.cases},
         "ratios": {case.name: [{"variant": r.variant, "of": r.of, "median": rounded(r.median, 4),
                                 "low": rounded(r.low, 4), "high": rounded(r.high, 4),
@@ -233,12 +244,12 @@ def read_record(path):
         same = {key: data[key] for key in ("title", "figure", "command", "commit", "content_sha256",
                                            "processor", "sizes", "failures", "cases", "times",
                                            "ratios", "units", "values")}
-        empty = np.array([])
         return Record(
             experiment_id=data["experiment"], **same,
             claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
-                           empty, empty, empty) for name, s in data["studies"].items()])
+                           *(np.array(s.get(k, [])) for k in ("x", "y")), np.array([]), s.get("members", []))
+                     for name, s in data["studies"].items()])
     except OSError as error:
         raise RunFileError(f"{path}: {error.strerror}") from error
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:

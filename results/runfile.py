@@ -104,6 +104,7 @@ class Study:
     x: np.ndarray
     y: np.ndarray
     y_of: np.ndarray  # of "within-spread": the values of the variant compared with
+    members: list = field(default_factory=list)  # of published "matched": names that x and y are of, by family
 
 
 @dataclass

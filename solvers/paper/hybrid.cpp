@@ -1,6 +1,7 @@
 #include "solvers/paper/hybrid.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "models/paper/meshing/outline.h"
 #include "solvers/paper/meshing/hybrid_mesher.h"
@@ -9,9 +10,11 @@ namespace geoprior::paper {
 
 namespace {
 
-/// Longest edges on flat ground and of the guide, in the mean width of the sheet, and the least
-/// part of what was asked for: an outline of notches makes a wide sheet look narrow.
-constexpr double kOfWidth = 0.6;
+/// Longest edges on flat ground and of the guide, in the mean width of the sheet: rows of a lattice
+/// lie half a root of three of its edge apart and keep half an edge from the border, so that one of
+/// them fits between the sides wherever it falls.
+const double kOfWidth = 2 / (2 + std::sqrt(3.0));
+/// Least part of what was asked for: an outline of notches makes a wide sheet look narrow.
 constexpr double kLeastSize = 0.25;
 
 /// Twice the area over the length of the outline: of a long band its width.

@@ -270,6 +270,24 @@ TEST_F(BadSheet, AsksForNoMeshLargerThanItsPatternJustifies) {
               AllOf(HasSubstr("scene.pattern.corners"), HasSubstr("between 3 and 10000")));
 }
 
+// Two millimetres wide, where an edge of the hybrid's mesh is six long: bent like any other sheet.
+TEST_F(BadSheet, IsNoStripThatIsThinnerThanTheMesh) {
+  const fs::path file = write_experiment(
+      "paper/bad",
+      "title = \"Thin\"\ntopic = \"paper\"\n[scene]\nduration = 0.2\n"
+      "pattern = { kind = \"rectangle\", width = 0.2, height = 0.002 }\n"
+      "handles = [\n"
+      "  { name = \"left\", segment = [-0.1, -0.001, -0.1, 0.001], keys = [{ t = 0 }] },\n"
+      "  { name = \"right\", segment = [0.1, -0.001, 0.1, 0.001], keys = [{ t = 0 }, { t = 1, move "
+      "= "
+      "[-0.05, 0, 0] }] },\n"
+      "]\n[[variant]]\nname = \"hybrid\"\nmethod = \"hybrid\"\n");
+  const ExecuteResult result = run_paper(file);
+  ASSERT_EQ(result.record.cases.size(), 1U);
+  for (const VariantRecord& variant : result.record.cases[0].variants)
+    EXPECT_EQ(variant.error, "") << variant.name;
+}
+
 TEST_F(BadSheet, NamesTheDrawingThatIsNestedTooDeep) {
   std::string svg;
   for (int i = 0; i < 100000; ++i) svg += "<g>";
