@@ -1,5 +1,5 @@
-"""Draws error against time of all studies of the kind "matched" that the published records of a topic have (docs/experiments.md):
-a panel an experiment, a line a family of rivals, a marker each hybrid.
+"""Draws distance against time of all studies that match it ("matched", docs/experiments.md) in the published records of
+a topic: a panel an experiment, a line a family of rivals (uniform meshes, then adaptive ones), a marker each hybrid.
 
     python3 results/error_time.py [--root FOLDER]
 """
@@ -28,7 +28,7 @@ def matched_of(published, topic):
     """experiment: its studies of time at equal error, in the order of the file."""
     found = {}
     for name, record in published.items():
-        studies = [s for s in record.studies if s.kind == "matched" and s.members and s.quantity.startswith("timing:")]
+        studies = [s for s in record.studies if s.kind == "matched" and s.match == "hausdorff_ratio" and s.quantity.startswith("timing:")]
         if name.startswith(f"{topic}/") and studies:
             found[name] = studies
     return found
@@ -52,8 +52,8 @@ def draw_panel(axes, name, studies):
     (_, *families) = families_of(studies[0])
     for k, (names, errors, costs) in enumerate(families):
         label = drawn_name("uniform meshes" if k == 0 else "adaptive meshes") if len(families) == 2 else names[0]
-        axes.loglog(costs * 1000, errors * 100, DASHES[k], marker=NEIGHBOURS[k % len(NEIGHBOURS)], color=COLORS[k],
-                    label=label)
+        axes.loglog(costs * 1000, errors * 100, linestyle=DASHES[k % len(DASHES)], color=COLORS[k],
+                    marker=NEIGHBOURS[k % len(NEIGHBOURS)], label=label)
     for k, study in enumerate(studies):
         names, errors, costs = next(families_of(study))
         axes.loglog(costs * 1000, errors * 100, METHODS[k % len(METHODS)], color=METHOD_COLOR if k == 0 else COLORS[4],

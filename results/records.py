@@ -130,6 +130,7 @@ def published_study(study, run):
     if study.kind == "matched":
         spec = next(s for s in tomllib.loads(run.experiment)["study"] if s["name"] == study.name)
         made["members"] = [[spec["variant"]], *(family["variants"] for family in spec["families"])]
+        made["match"] = spec["match"]
         made |= {key: [rounded(value, 4) for value in getattr(study, key)] for key in ("x", "y")}
     return made
 
@@ -248,7 +249,8 @@ def read_record(path):
             experiment_id=data["experiment"], **same,
             claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
-                           *(np.array(s.get(k, [])) for k in ("x", "y")), np.array([]), s.get("members", []))
+                           *(np.array([present(v) for v in s.get(k, [])], float) for k in ("x", "y")), np.array([]),
+                           s.get("members", []), s.get("match", ""))
                      for name, s in data["studies"].items()])
     except OSError as error:
         raise RunFileError(f"{path}: {error.strerror}") from error

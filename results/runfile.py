@@ -105,6 +105,7 @@ class Study:
     y: np.ndarray
     y_of: np.ndarray  # of "within-spread": the values of the variant compared with
     members: list = field(default_factory=list)  # of published "matched": names that x and y are of, by family
+    match: str = ""  # of published "matched": the error
 
 
 @dataclass

@@ -10,25 +10,27 @@ namespace geoprior::paper {
 
 namespace {
 
-/// Longest edges on flat ground and of the guide, in the mean width of the sheet: rows of a lattice
-/// lie half a root of three of its edge apart and keep half an edge from the border, so that one of
+/// Longest edges on flat ground and of the guide, in the width of a band: rows of a lattice lie
+/// half a root of three of its edge apart and keep half an edge from the border, so that one of
 /// them fits between the sides wherever it falls.
 const double kOfWidth = 2 / (2 + std::sqrt(3.0));
 /// Least part of what was asked for: an outline of notches makes a wide sheet look narrow.
 constexpr double kLeastSize = 0.25;
 
-/// Twice the area over the length of the outline: of a long band its width.
-double mean_width(const Pattern& pattern) {
+/// Shorter side of the rectangle that has the area and the outline's length of the pattern: of a
+/// band, straight or not, its width. A quarter of the outline of what is rounder than a square.
+double band_width(const Pattern& pattern) {
   double length = 0;
   each_loop_edge(pattern, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     length += (b - a).norm();
   });
-  return 2 * signed_area(pattern) / length;
+  const double half = length / 2;
+  return (half - std::sqrt(std::max(0.0, half * half - 4 * signed_area(pattern)))) / 2;
 }
 
 /// A band has room for few edges across: a mesh of longer ones bends in pleats.
 HybridOptions fitted(HybridOptions options, const Pattern& pattern) {
-  const double most = kOfWidth * mean_width(pattern);
+  const double most = kOfWidth * band_width(pattern);
   for (double* size : {&options.flat_size, &options.guide_edge})
     *size = std::clamp(most, kLeastSize * *size, *size);
   return options;

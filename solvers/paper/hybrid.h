@@ -8,8 +8,8 @@
 namespace geoprior::paper {
 
 /// The hybrid model as a process (thesis 3.2.1, Figures 3.6 to 3.9): elastic steps on a coarse mesh
-/// whose edges are the rulings of planes, cylinders and cones; after each frame the rulings follow
-/// the bending that the steps have left, as an even mesh relaxes it, and its compression.
+/// whose edges are the rulings of planes, cylinders and cones; after every few frames the rulings
+/// follow the bending that the steps have left, as an even mesh relaxes it, and its compression.
 ///
 /// Paper that tears (`Sheet::toughness`) does so at the candidates of torn_structure.h after every
 /// step (thesis 3.2.2); the lips are borders of the structure, the tips singular points.

@@ -34,7 +34,7 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
   v.value("seeding_distance", o.seeding_distance,
           {.doc = "distance s of parallel rulings", .unit = "m", .min = 1e-4, .max = 10});
   v.value("flat_size", o.flat_size,
-          {.doc = "largest edge of the mesh where nothing is bent yet",
+          {.doc = "largest edge of the mesh where nothing is bent yet; shorter on a narrow band",
            .unit = "m",
            .min = 1e-3,
            .max = 100});
@@ -83,7 +83,8 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
                   "them; without the test compression alone makes them, for ever"});
   v.value("tracking", o.tracking, {.doc = "rulings follow the bending of the simulated sheet"});
   v.value("guide_edge", o.guide_edge,
-          {.doc = "edge length of the even mesh that shows how the sheet would bend",
+          {.doc = "edge length of the even mesh that shows how the sheet would bend; shorter on a "
+                  "narrow band",
            .unit = "m",
            .min = 1e-3,
            .max = 10});
@@ -98,8 +99,8 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
            .max = 1000});
   v.value(
       "jump_share", o.jump_share,
-      {.doc = "farthest that a change of the mesh may move the sheet, in the way that the sheet "
-              "went since the last look",
+      {.doc = "farthest that a change of the mesh may move the sheet, in the way that its fastest "
+              "vertex goes between two looks or in 0.625 seeding distances, if that is shorter",
        .min = 0,
        .max = 1e6});
   v.value("tracking_rate_deg", o.tracking_rate_deg,

@@ -44,7 +44,7 @@ struct HybridOptions {
   int projection_iterations = 6;
   double projection_strain = 1e-4;
   /// Strain after the projection beyond which a change of the structure is taken back; the next
-  /// frame tries again, with another draw. Only when the unchanged structure is strained as well
+  /// look tries again, with another draw. Only when the unchanged structure is strained as well
   /// are there more attempts in the same frame, and the best of all stays.
   double accepted_strain = 4e-3;
   int attempts = 3;

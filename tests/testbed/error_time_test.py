@@ -16,11 +16,11 @@ import error_time  # noqa: E402
 from runfile import Study  # noqa: E402
 
 
-def record(value=1.5, kind="matched", quantity="timing:run"):
+def record(value=1.5, kind="matched", quantity="timing:run", match="hausdorff_ratio"):
     """Of a method beside three meshes and a fourth that is a family of its own."""
     study = Study("time at equal error", kind, quantity, value, value - 0.1, value + 0.1,
                   np.array([0.02, 0.05, 0.01, 0.03]), np.array([0.004, 0.002, 0.02, 0.003]), np.array([]),
-                  [["hybrid"], ["uniform", "uniform-512"], ["adaptive"]])
+                  [["hybrid"], ["uniform", "uniform-512"], ["adaptive"]], match)
     return SimpleNamespace(studies=[study])
 
 
@@ -33,7 +33,7 @@ class ErrorAgainstTime(unittest.TestCase):
 
     def test_is_drawn_of_times_of_the_topic_alone(self):
         published = {"paper/star": record(), "fluid/tank": record(), "paper/bend": record(kind="spread"),
-                     "paper/leaf": record(quantity="fold_energy")}
+                     "paper/leaf": record(quantity="fold_energy"), "paper/snap": record(match="fold_energy")}
         self.assertEqual(list(error_time.matched_of(published, "paper")), ["paper/star"])
 
     def test_is_drawn_anew_where_a_record_changed(self):

@@ -43,12 +43,12 @@ constexpr double kUnacceptableStrain = 1e-2;
 constexpr int kPatientIterations = 30;
 /// Most rulings side by side over the pattern.
 constexpr double kMostRulings = 1e6;
-/// Frames between two looks at whether a singular point is still needed.
+/// Least frames between two looks at whether a singular point is still needed.
 constexpr int kReview = 5;
 /// Strain, in that which the last look could not mend, at which the next is not waited for.
 constexpr double kWorse = 2;
-/// Farthest that a change of the mesh may move the sheet, in seeding distances.
-constexpr double kFarthest = 0.25;
+/// Longest way of a sheet of which a change of the mesh may move it a part, in seeding distances.
+constexpr double kLongestWay = 0.625;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -174,6 +174,7 @@ void HybridMesher::stepped(const Sheet& sheet, ShellStepper& stepper, ShellState
 /// Makes the mesh of the tears as they are now. Nothing else of it changes but what they touch.
 void HybridMesher::tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context) {
   pattern_ = tearing_->tears().torn();
+  looks_.wake();
   guide_.reset();
   RulingEditor pen = editor();
   follow_tears(tearing_->tears(), state.time, options_, pen);
@@ -210,7 +211,7 @@ std::vector<DemandGroup> HybridMesher::analyse(const Sheet& sheet, ShellState& s
 
 bool HybridMesher::track(RulingEditor& editor, PropagationReport& events) {
   const bool refined = refine_rulings(folds_, options_, editor);
-  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings, looked_over_);
+  const bool followed = follow_bending(*field_, options_, editor, events.new_rulings, look_span_);
   return refined || followed;
 }
 
@@ -271,7 +272,8 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
   }
   meshes_made_ = 0;
   settle_steps_ = 0;
-  strained_ = false;
+  strains_unchanged_ = false;
+  weighed_ = false;
   ++frames_;
   looks_.pass_frame();
   std::vector<DemandGroup> groups;
@@ -287,14 +289,16 @@ bool HybridMesher::adapt(const Sheet& sheet, ShellStepper& stepper, ShellState& 
     keep(sheet, 1, state, context);
     const bool worse = projection_.strain_after > kWorse * left_strain_;
     if (!strains() || !(looks_.may_be_early() || worse)) return false;
+    strains_unchanged_ = true;
     restore(before, state);
     const Phase phase(context, "analyse");
     groups = analyse(sheet, state, context);
   }
-  looked_over_ = looks_.since();
-  looks_.looked();
+  look_span_ = std::min(looks_.since(), options_.look_frames);
   const bool reviews =
-      options_.energy_test && frames_ / kReview != (frames_ - looked_over_) / kReview;
+      options_.energy_test && frames_ / kReview != (frames_ - looks_.since()) / kReview;
+  looks_.looked();
+  left_strain_ = 0;
   return look(sheet, groups, reviews, before, state, context);
 }
 
@@ -323,7 +327,7 @@ bool HybridMesher::take_back(const Sheet& sheet, ShellState& state, RunContext& 
   if (!before_) return false;
   restore(*before_, state);
   keep(sheet, 1, state, context);
-  looks_.in_vain();
+  give_up();
   ++rejected_;
   return true;
 }
@@ -333,6 +337,7 @@ bool HybridMesher::take_back(const Sheet& sheet, ShellState& state, RunContext& 
 void HybridMesher::weigh_births(const Sheet& sheet, const Snapshot& before, ShellState& state,
                                 RunContext& context) {
   const Phase phase(context, "weigh");
+  weighed_ = true;
   const auto energy = [&] {
     return settled_energy(sheet, options_.stepper, context.seed(), state);
   };
@@ -368,12 +373,13 @@ bool HybridMesher::review_points(const Sheet& sheet, ShellState& state, RunConte
   RulingEditor pen = editor();
   pen.remove_point(static_cast<int>(unyielded - points.begin()));
   int new_rulings = 0;
-  if (field_) follow_bending(*field_, options_, pen, new_rulings, looked_over_);
+  if (field_) follow_bending(*field_, options_, pen, new_rulings, look_span_);
   remesh();
   carry(sheet, state, structure_.singular_points.size(), context);
   if (options_.projection) project(sheet, kRemeshedIterations, state, context);
   if (projection_.strain_after <= options_.accepted_strain &&
       settled_energy(sheet, options_.stepper, context.seed(), state) <= with_point) {
+    weighed_ = true;
     events_.changed = true;
     return true;
   }
@@ -419,12 +425,13 @@ void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunCo
 bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                                const Snapshot& before, const Snapshot* tried, ShellState& state,
                                RunContext& context) {
-  strained_ = true;
+  strains_unchanged_ = true;
   keep(sheet, options_.last_iterations, state, context);
   if (!strains()) return false;
-  looks_.in_vain();
-  left_strain_ = projection_.strain_after;
-  if (tried == nullptr) return false;
+  if (tried == nullptr) {
+    give_up();
+    return false;
+  }
   Snapshot best = snapshot(state);
   const auto improve = [&](const Snapshot& other) {
     if (other.projection.strain_after < best.projection.strain_after) best = other;
@@ -441,8 +448,14 @@ bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup
   if (projection_.strain_after > kUnacceptableStrain) {
     project(sheet, kPatientIterations, state, context);
   }
-  left_strain_ = projection_.strain_after;
+  give_up();
   return events_.changed;
+}
+
+/// The look was in vain: what strain it has left is not looked at again soon.
+void HybridMesher::give_up() {
+  looks_.in_vain();
+  left_strain_ = projection_.strain_after;
 }
 
 /// Takes the state to the new mesh. A new singular point is moved a little towards its neighbours,
@@ -475,24 +488,38 @@ void HybridMesher::project(const Sheet& sheet, int effort, ShellState& state, Ru
       state, {effort * options_.projection_iterations, options_.projection_strain});
 }
 
-/// Whether a change of the mesh moves the sheet farther than it went itself since the last look:
-/// such a change is worse than none, whatever it mends. A sheet at rest keeps its mesh. Not asked
-/// of singular points, which are weighed by energy, and of a sheet that strains without the change.
+/// Whether a change of the mesh moves the sheet farther than the part `jump_share` of the way that
+/// its fastest vertex goes between two looks: such a change is worse than none, whatever it mends.
+/// A sheet at rest keeps its mesh. Not asked of singular points that come or go, which are weighed
+/// by energy, and of a sheet that strains without the change.
 bool HybridMesher::moves_too_far(const Sheet& sheet, const ShellState& state) const {
-  if (!before_ || strained_ || events_.new_singular_points > 0) return false;
+  if (!before_ || strains_unchanged_ || weighed_ || events_.new_singular_points > 0) return false;
   const ShellState carried = transfer_state(before_->state, state.mesh);
   const double moved = (state.x - carried.x).rowwise().norm().maxCoeff();
   const double speed = before_->state.v.rowwise().norm().maxCoeff();
-  const double way = speed * std::min(looked_over_, options_.look_frames) * sheet.frame_interval;
-  return moved > std::min(kFarthest * options_.seeding_distance, options_.jump_share * way);
+  const double way = speed * look_span_ * sheet.frame_interval;
+  const double longest = kLongestWay * options_.seeding_distance;
+  return moved > options_.jump_share * std::min(way, longest);
+}
+
+bool HybridMesher::strains_without_change(const Sheet& sheet, ShellState state,
+                                          RunContext& context) {
+  const Snapshot changed = snapshot(state);
+  restore(*before_, state);
+  keep(sheet, 1, state, context);
+  const bool strained = strains();
+  restore(changed, state);
+  return strained;
 }
 
 /// The projection puts the new mesh where it is isometric, not where it is at rest.
 bool HybridMesher::settle(const Sheet& sheet, ShellStepper& stepper, ShellState& state,
                           RunContext& context) {
-  const Phase phase(context, "settle");
-  settle_steps_ = paper::settle(sheet, options_.settle, stepper, state);
-  return !moves_too_far(sheet, state);
+  {
+    const Phase phase(context, "settle");
+    settle_steps_ = paper::settle(sheet, options_.settle, stepper, state);
+  }
+  return !moves_too_far(sheet, state) || strains_without_change(sheet, state, context);
 }
 
 void HybridMesher::annotate(const ShellState& state, Frame& frame) const {

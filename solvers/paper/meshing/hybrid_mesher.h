@@ -80,6 +80,9 @@ class HybridMesher final : public SheetMesher {
   bool review_points(const Sheet& sheet, ShellState& state, RunContext& context);
   void carry(const Sheet& sheet, ShellState& state, std::size_t old_points,
              RunContext& context) const;
+  void give_up();
+  [[nodiscard]] bool strains_without_change(const Sheet& sheet, ShellState state,
+                                            RunContext& context);
   [[nodiscard]] bool moves_too_far(const Sheet& sheet, const ShellState& state) const;
   void project(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
 
@@ -103,11 +106,12 @@ class HybridMesher final : public SheetMesher {
   int meshes_made_ = 0;   ///< in this frame, of changes taken back too
   int frames_ = 0;        ///< so far
   LookTimer looks_;
-  int looked_over_ = 0;     ///< frames that the last look came after
-  bool strained_ = false;   ///< the last look found the sheet strained without a change
-  double left_strain_ = 0;  ///< by the last look that could not mend it
-  int unborn_ = 0;          ///< singular points that were not worth their energy, so far
-  int rejected_ = 0;        ///< changes of the structure that the sheet could not follow, so far
+  int look_span_ = 0;               ///< frames that the last look stands for
+  bool strains_unchanged_ = false;  ///< in this frame, the mesh being as it was
+  bool weighed_ = false;            ///< in this frame, a singular point
+  double left_strain_ = 0;          ///< by a last look in vain
+  int unborn_ = 0;                  ///< singular points that were not worth their energy, so far
+  int rejected_ = 0;                ///< changes that strained the sheet or moved it too far, so far
 };
 
 }  // namespace geoprior::paper

@@ -6,9 +6,9 @@
 
 namespace geoprior::paper {
 
-/// When the structure of a sheet is looked at: every so many frames, and after a look that came to
-/// nothing not before twice the time, up to eight times `frames`. What could not be changed now
-/// cannot be a frame later either.
+/// When the structure of a sheet is looked at: every so many frames, and after a look in vain (its
+/// change was taken back, or the sheet strains whatever was tried) not before twice the time, up to
+/// eight times `frames`. What could not be changed now cannot be a frame later either.
 class LookTimer {
  public:
   explicit LookTimer(int frames) : frames_(frames) {}
@@ -25,8 +25,11 @@ class LookTimer {
     last_stretch_ = stretch_;
     stretch_ = 1;
   }
-  /// The last look came to nothing.
+  /// The last look was.
   void in_vain() { stretch_ = std::min(2 * last_stretch_, kMostStretch); }
+
+  /// The sheet is another one: it does not wait any longer than usual.
+  void wake() { stretch_ = 1; }
 
   void save(StateWriter& out) const {
     out.number(since_);

@@ -95,7 +95,7 @@ TEST(HybridBend, LooksInEveryFourthFrameOnly) {
 struct Changes {
   int frames = 0, at_rest = 0;
   double farthest = 0;    ///< that one moved the sheet (m)
-  double most_share = 0;  ///< of it in the way that the sheet went in five frames before
+  double most_share = 0;  ///< of it in the way that the sheet goes between two looks
 };
 Changes changes_of_pinched_sheet(const HybridOptions& options) {
   Sheet sheet = pinched_sheet();
@@ -112,9 +112,10 @@ Changes changes_of_pinched_sheet(const HybridOptions& options) {
             std::equal(rulings.begin(), rulings.end(), before.begin(), before.end(),
                        [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
         before = rulings;
-        const bool born = std::exchange(points, mesher.structure().singular_points.size()) !=
-                          mesher.structure().singular_points.size();
-        if (same || born) return;
+        const bool points_changed =
+            std::exchange(points, mesher.structure().singular_points.size()) !=
+            mesher.structure().singular_points.size();
+        if (same || points_changed) return;
         ++changes.frames;
         if (state.time > 2.6) ++changes.at_rest;
         const ShellState carried = transfer_state(found, state.mesh);
@@ -128,7 +129,7 @@ Changes changes_of_pinched_sheet(const HybridOptions& options) {
 }
 
 // A change of the mesh that moves the sheet farther than it goes by itself is what one sees of it.
-TEST(HybridBend, MovesTheSheetLessByItsChangesThanTheHandsDo) {
+TEST(HybridBend, MovesTheSheetLessByAChangeOfRulingsThanItWent) {
   const HybridOptions options;
   const Changes changes = changes_of_pinched_sheet(options);
   EXPECT_GT(changes.frames, 0);
