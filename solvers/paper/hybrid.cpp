@@ -17,17 +17,6 @@ const double kOfWidth = 2 / (2 + std::sqrt(3.0));
 /// Least part of what was asked for: an outline of notches makes a wide sheet look narrow.
 constexpr double kLeastSize = 0.25;
 
-/// Shorter side of the rectangle that has the area and the outline's length of the pattern: of a
-/// band, straight or not, its width. A quarter of the outline of what is rounder than a square.
-double band_width(const Pattern& pattern) {
-  double length = 0;
-  each_loop_edge(pattern, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    length += (b - a).norm();
-  });
-  const double half = length / 2;
-  return (half - std::sqrt(std::max(0.0, half * half - 4 * signed_area(pattern)))) / 2;
-}
-
 /// A band has room for few edges across: a mesh of longer ones bends in pleats.
 HybridOptions fitted(HybridOptions options, const Pattern& pattern) {
   const double most = kOfWidth * band_width(pattern);

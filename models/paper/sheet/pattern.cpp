@@ -341,6 +341,13 @@ double width(const Pattern& pattern) {
   return pattern.border.empty() ? 0 : bounding_box(pattern).sizes().maxCoeff();
 }
 
+double band_width(const Pattern& pattern) {
+  double length = 0;
+  each_loop_edge(pattern, [&](const Vector2d& a, const Vector2d& b) { length += (b - a).norm(); });
+  const double half = length / 2;
+  return (half - std::sqrt(std::max(0.0, half * half - 4 * signed_area(pattern)))) / 2;
+}
+
 bool contains(const Pattern& pattern, const Vector2d& p, double tolerance) {
   int turns = 0;
   for (std::size_t k = 0; k < pattern.loop_count(); ++k) turns += turns_about(pattern.loop(k), p);

@@ -100,6 +100,10 @@ double diameter(const Pattern& pattern);
 /// Larger side of the bounding box (m): the "width" that tolerances refer to.
 double width(const Pattern& pattern);
 
+/// Shorter side of the rectangle that has the area and the outline's length of the pattern (m): of
+/// a band, straight or not, its width. A quarter of the outline of what is rounder than a square.
+double band_width(const Pattern& pattern);
+
 /// True inside, and within `tolerance` (m) of border or hole: not in a hole.
 bool contains(const Pattern& pattern, const Eigen::Vector2d& p, double tolerance = 0);
 
