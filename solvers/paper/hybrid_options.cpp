@@ -34,10 +34,13 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
   v.value("seeding_distance", o.seeding_distance,
           {.doc = "distance s of parallel rulings", .unit = "m", .min = 1e-4, .max = 10});
   v.value("flat_size", o.flat_size,
-          {.doc = "largest edge of the mesh where nothing is bent yet; shorter on a narrow band",
+          {.doc = "largest edge of the mesh where nothing is bent yet",
            .unit = "m",
            .min = 1e-3,
            .max = 100});
+  v.value("fit_band", o.fit_band,
+          {.doc = "edges on flat ground and of the guide are short enough for a row of vertices "
+                  "between the sides of a narrow band"});
   v.value("ruling_parts", o.ruling_parts,
           {.doc = "most edges along a ruling; with 1 it cannot bend, and only compression makes "
                   "singular points",
