@@ -25,11 +25,11 @@ struct LastFrame final : geoprior::FrameSink {
 int main() {
   geoprior::paper::Sheet sheet;
   sheet.pattern = geoprior::paper::rectangle_pattern(0.2, 0.05);
-  sheet.duration = 0.2;
+  sheet.duration = 1;
   for (const double side : {-1.0, 1.0}) {
     geoprior::paper::Handle& hand = sheet.handles.emplace_back();
     hand.segment = {{side * 0.1, -0.025}, {side * 0.1, 0.025}};
-    hand.motion = geoprior::Trajectory{{{.time = 0}, {.time = 0.2, .shift = {-side * 0.01, 0, 0}}}};
+    hand.motion = geoprior::Trajectory{{{.time = 0}, {.time = 1, .shift = {-side * 0.01, 0, 0}}}};
   }
   geoprior::RunContext context;
   LastFrame sink;
