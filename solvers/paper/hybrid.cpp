@@ -19,7 +19,6 @@ constexpr double kLeastSize = 0.25;
 
 /// A band has room for few edges across: a mesh of longer ones bends in pleats.
 HybridOptions fitted(HybridOptions options, const Pattern& pattern) {
-  if (!options.fit_band) return options;
   const double most = kOfWidth * band_width(pattern);
   for (double* size : {&options.flat_size, &options.guide_edge})
     *size = std::clamp(most, kLeastSize * *size, *size);

@@ -38,9 +38,6 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
            .unit = "m",
            .min = 1e-3,
            .max = 100});
-  v.value("fit_band", o.fit_band,
-          {.doc = "edges on flat ground and of the guide are short enough for a row of vertices "
-                  "between the sides of a narrow band"});
   v.value("ruling_parts", o.ruling_parts,
           {.doc = "most edges along a ruling; with 1 it cannot bend, and only compression makes "
                   "singular points",
@@ -80,6 +77,19 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
            .max = 180});
 }
 
+void describe_looks(OptionVisitor& v, HybridOptions& o) {
+  v.value("look_frames", o.look_frames,
+          {.doc = "frames from one look at rulings to the next, unless the sheet strains",
+           .min = 1,
+           .max = 1000});
+  v.value(
+      "jump_share", o.jump_share,
+      {.doc = "farthest that a change of the mesh may move the sheet, in the way that its fastest "
+              "vertex goes between two looks or in 0.625 seeding distances, if that is shorter",
+       .min = 0,
+       .max = 1e6});
+}
+
 void describe_tracking(OptionVisitor& v, HybridOptions& o) {
   v.value("energy_test", o.energy_test,
           {.doc = "singular points are made, and stay, only where the sheet has less energy with "
@@ -96,16 +106,6 @@ void describe_tracking(OptionVisitor& v, HybridOptions& o) {
            .unit = "deg",
            .min = 1,
            .max = 45});
-  v.value("look_frames", o.look_frames,
-          {.doc = "frames from one look at rulings to the next, unless the sheet strains",
-           .min = 1,
-           .max = 1000});
-  v.value(
-      "jump_share", o.jump_share,
-      {.doc = "farthest that a change of the mesh may move the sheet, in the way that its fastest "
-              "vertex goes between two looks or in 0.625 seeding distances, if that is shorter",
-       .min = 0,
-       .max = 1e6});
   v.value("tracking_rate_deg", o.tracking_rate_deg,
           {.doc = "largest angle by which a ruling turns in a frame",
            .unit = "deg",
@@ -154,6 +154,7 @@ void describe(OptionVisitor& v, HybridOptions& o) {
   describe_compression(v, o);
   describe_rulings(v, o);
   describe_tracking(v, o);
+  describe_looks(v, o);
   describe_group(v, "settle", o.settle,
                  {.doc = "how the sheet comes to rest after every new mesh"});
   describe_group(v, "tearing", o.tearing, {.doc = "how tears grow in scenes whose paper tears"});
