@@ -28,7 +28,8 @@ def matched_of(published, topic):
     """experiment: its studies of time at equal error, in the order of the file."""
     found = {}
     for name, record in published.items():
-        studies = [s for s in record.studies if s.kind == "matched" and s.match == "hausdorff_ratio" and s.quantity.startswith("timing:")]
+        studies = [s for s in record.studies
+                   if (s.kind, s.match) == ("matched", "hausdorff_ratio") and s.quantity.startswith("timing:")]
         if name.startswith(f"{topic}/") and studies:
             found[name] = studies
     return found
@@ -36,7 +37,8 @@ def matched_of(published, topic):
 
 def digest(studies):
     """Of everything that is drawn."""
-    drawn = {name: [[s.members, list(s.x), list(s.y), s.value, s.low, s.high] for s in of] for name, of in studies.items()}
+    drawn = {name: [[s.members, list(s.x), list(s.y), s.value, s.low, s.high] for s in of]
+             for name, of in studies.items()}
     return hashlib.sha256(json.dumps(drawn, sort_keys=True).encode()).hexdigest()
 
 
@@ -69,7 +71,7 @@ def draw_panel(axes, name, studies):
 
 
 def drawing(studies):
-    """SVG text; its description is the digest of what it shows."""
+    """SVG text, with a comment that holds the digest of what it shows."""
     with plt.rc_context(STYLE):
         rows = math.ceil(len(studies) / COLUMNS)
         figure, grid = plt.subplots(rows, COLUMNS, figsize=(3.3 * COLUMNS, 2.8 * rows + 0.5), squeeze=False)

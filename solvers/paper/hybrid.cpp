@@ -7,7 +7,6 @@
 #include "solvers/paper/meshing/hybrid_mesher.h"
 
 namespace geoprior::paper {
-
 namespace {
 
 /// Longest edges on flat ground and of the guide, in the width of a band: rows of a lattice lie

@@ -20,12 +20,13 @@ class LookTimer {
   /// Frames since the last look.
   [[nodiscard]] int since() const { return since_; }
 
+  /// A look follows, in this frame.
   void looked() {
     since_ = 0;
     last_stretch_ = stretch_;
     stretch_ = 1;
   }
-  /// The last look was.
+  /// That look was in vain.
   void in_vain() { stretch_ = std::min(2 * last_stretch_, kMostStretch); }
 
   /// The sheet is another one: it does not wait any longer than usual.
@@ -34,12 +35,10 @@ class LookTimer {
   void save(StateWriter& out) const {
     out.number(since_);
     out.number(stretch_);
-    out.number(last_stretch_);
   }
   void load(StateReader& in) {
     since_ = in.number<int>();
     stretch_ = in.number<int>();
-    last_stretch_ = in.number<int>();
   }
 
  private:

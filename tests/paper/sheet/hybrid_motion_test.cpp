@@ -66,6 +66,11 @@ TEST(HybridBend, MakesACylinderOfTheHeightOfTheElastica) {
   EXPECT_NEAR(height, 0.2 * relative_elastica_height(0.4), 0.02 * 0.2);
 }
 
+bool same_lines(const std::vector<Ruling>& rulings, const std::vector<Ruling>& others) {
+  return std::equal(rulings.begin(), rulings.end(), others.begin(), others.end(),
+                    [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
+}
+
 // Between two looks no ruling turns, comes or goes, and the sheet still bends to the elastica.
 TEST(HybridBend, LooksInEveryFourthFrameOnly) {
   const Sheet sheet = bent_sheet();
@@ -77,10 +82,7 @@ TEST(HybridBend, LooksInEveryFourthFrameOnly) {
   int frame = 0;
   run_hybrid(sheet, options, 1, [&](const HybridMesher& mesher, const ShellState& state) {
     const std::vector<Ruling>& rulings = mesher.structure().rulings;
-    const bool same =
-        std::equal(rulings.begin(), rulings.end(), before.begin(), before.end(),
-                   [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
-    if (!same) changed.push_back(frame);
+    if (!same_lines(rulings, before)) changed.push_back(frame);
     before = rulings;
     end = state;
     ++frame;
@@ -108,9 +110,7 @@ Changes changes_of_pinched_sheet(const HybridOptions& options) {
       sheet, options, 1,
       [&](const HybridMesher& mesher, const ShellState& state) {
         const std::vector<Ruling>& rulings = mesher.structure().rulings;
-        const bool same =
-            std::equal(rulings.begin(), rulings.end(), before.begin(), before.end(),
-                       [](const Ruling& r, const Ruling& s) { return r.a == s.a && r.b == s.b; });
+        const bool same = same_lines(rulings, before);
         before = rulings;
         const bool points_changed =
             std::exchange(points, mesher.structure().singular_points.size()) !=

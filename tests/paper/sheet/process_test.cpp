@@ -150,6 +150,46 @@ TEST(SheetProcess, GoesOnWithTheMeshBeforeOneThatTakesNoStep) {
   EXPECT_THROW(run(stuck), Error);
 }
 
+/// Says of every mesh, when the sheet has settled, that it is to be taken back.
+class UneasyMesher final : public SheetMesher {
+ public:
+  ShellState start(const Sheet& sheet, RunContext& context) override {
+    return resting_state(sheet, uniform_mesh(sheet.pattern, 60, UniformLayout::equilateral, {}, 1),
+                         context.seed());
+  }
+  bool adapt(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& state,
+             RunContext& /*context*/) override {
+    before_ = state;
+    state.x.col(2).array() += 1;
+    return true;
+  }
+  bool settle(const Sheet& /*sheet*/, ShellStepper& /*stepper*/, ShellState& /*state*/,
+              RunContext& /*context*/) override {
+    return false;
+  }
+  bool take_back(const Sheet& /*sheet*/, ShellState& state, RunContext& /*context*/) override {
+    state = before_;
+    return true;
+  }
+  void annotate(const ShellState& /*state*/, Frame& /*frame*/) const override {}
+
+ private:
+  ShellState before_;
+};
+
+TEST(SheetProcess, GoesOnWithTheMeshBeforeOneThatItsMesherTakesBack) {
+  Sheet sheet = bent_square();
+  sheet.handles.clear();
+  sheet.gravity = {0, 0, 0};
+  SheetProcess process(sheet, {}, std::make_unique<UneasyMesher>());
+  const Recording r = run(process);
+  ASSERT_EQ(r.frames.size(), 6U);
+  EXPECT_LT((r.frames.back().parts.at("surface").points - r.frames[0].parts.at("surface").points)
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-3);
+}
+
 TEST(HandleSpeed, IsThatOfTheFastestPointThatHolds) {
   Sheet sheet = bent_square();
   // A patch that turns by a right angle within 0.1 s: its rim at 2 cm goes pi/2 * 0.02 m.
