@@ -52,6 +52,13 @@ void add_solver(DiagnosticTable& table) {
         kWork}});
 }
 
+/// Recorded of every sheet, whoever made its mesh.
+void add_picture(DiagnosticTable& table) {
+  table.unmeasured(
+      "of the surface that pictures show: metrics are those of the simulated mesh",
+      {{"drawn_distance", "m", "farthest of the part drawn from the triangles of surface"}});
+}
+
 /// Recorded where the paper tears.
 void add_tears(DiagnosticTable& table) {
   table.measured("tear_length", {"tear_length", "m", "length of all tears"});
@@ -108,6 +115,7 @@ void add_structure(DiagnosticTable& table) {
 std::vector<DiagnosticEntry> diagnostics() {
   DiagnosticTable table;
   add_solver(table);
+  add_picture(table);
   add_tears(table);
   add_structure(table);
   return table.rows();

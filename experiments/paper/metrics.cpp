@@ -285,16 +285,26 @@ MetricGroup tearing_force_group() {
 }
 
 MetricGroup tear_path_group() {
-  return reference_metrics<PaperScene>({"surface", "tears"},
-                                       [](const PaperScene& scene, const Frame& frame,
-                                          const Frame& reference) -> std::optional<double> {
-                                         return tear_path_distance(sheet_frame(scene, frame),
-                                                                   sheet_frame(scene, reference));
-                                       })
+  using M = const PathComparison&;
+  return reference_metrics<PaperScene>(
+             {"surface", "tears"},
+             [](const PaperScene& scene, const Frame& frame, const Frame& reference) {
+               return tear_beside_reference(sheet_frame(scene, frame),
+                                            sheet_frame(scene, reference));
+             })
       .row("tear_path_distance", "m",
            "Hausdorff distance of the longest tear from that of the reference variant, in the "
            "pattern, as far as the shorter of both goes",
-           kLow, kSmooth);
+           kLow, kSmooth, [](M m) { return m.distance; })
+      .row("tear_path_drift", "1",
+           "farthest that a point of the longest tear lies from that of the reference variant, in "
+           "the pattern, over the length that the shorter of both has: a drift where no closed "
+           "form says where a tear goes",
+           kLow, kSmooth, [](M m) { return m.drift; })
+      .row("tear_path_deviation", "deg",
+           "angle between the chords of the longest tear and of that of the reference variant, as "
+           "far as the shorter of both goes",
+           kLow, kSmooth, [](M m) { return m.deviation; });
 }
 
 }  // namespace

@@ -124,13 +124,13 @@ std::optional<TearingForces> tearing_forces(const PaperScene& scene, const Frame
   return out;
 }
 
-Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference) {
+std::optional<PathComparison> tear_beside_reference(const SheetFrame& f,
+                                                    const SheetFrame& reference) {
   const auto here = torn_sheet(f.frame), there = torn_sheet(reference.frame);
   if (!here || !there) return std::nullopt;
   const TearPath *p = longest_path(here->paths), *q = longest_path(there->paths);
   if (p == nullptr || q == nullptr) return std::nullopt;
-  const double length = std::min(path_length(*p), path_length(*q));
-  return path_distance(first_part(*p, length), first_part(*q, length));
+  return compare_paths(*p, *q);
 }
 
 }  // namespace geoprior::paper

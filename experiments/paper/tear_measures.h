@@ -43,7 +43,8 @@ struct TearingForces {
 /// Absent when the method records no tears.
 std::optional<TearingForces> tearing_forces(const PaperScene& scene, const FrameSequence& frames);
 
-/// Hausdorff distance of the longest tears in the pattern, the shorter one's length of both (m).
-Value tear_path_distance(const SheetFrame& f, const SheetFrame& reference);
+/// The longest tear beside that of the reference, in the pattern; absent before both have grown.
+std::optional<PathComparison> tear_beside_reference(const SheetFrame& f,
+                                                    const SheetFrame& reference);
 
 }  // namespace geoprior::paper

@@ -15,6 +15,7 @@ FigureView paper_view() {
   view.shading = FigureView::Shading::flat;
   view.material = FigureView::Material::paper;
   view.edges = true;
+  view.plain_part = "drawn";
   view.overlays = {"rulings", "singular_points", "handles"};
   return view;
 }

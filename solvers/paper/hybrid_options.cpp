@@ -38,6 +38,11 @@ void describe_rulings(OptionVisitor& v, HybridOptions& o) {
            .unit = "m",
            .min = 1e-3,
            .max = 100});
+  v.value("refinements", o.refinements,
+          {.doc = "most halvings of edges where the sheet strains whatever its rulings are; 0: the "
+                  "mesh stays coarse",
+           .min = 0,
+           .max = 6});
   v.value("ruling_parts", o.ruling_parts,
           {.doc = "most edges along a ruling; with 1 it cannot bend, and only compression makes "
                   "singular points",

@@ -19,6 +19,7 @@ struct HybridOptions {
   double group_angle_deg = 20;
   double seeding_distance = 0.016;  ///< s (m)
   double flat_size = 0.025;         ///< m
+  int refinements = 2;              ///< most halvings of `flat_size` where the sheet strains
   int ruling_parts = 6;
   double merge_angle_deg = 5;
   double singular_spacing = 2;

@@ -6,6 +6,7 @@
 #include "experiments/paper/scene/fast_handles.h"
 #include "experiments/paper/scene/make_sheet.h"
 #include "experiments/paper/scene/pulled_apart.h"
+#include "models/paper/sheet/drawn_surface.h"
 #include "models/paper/sheet/valid.h"
 #include "testbed/keyframes.h"
 
@@ -41,6 +42,11 @@ std::map<std::string, double> PaperScene::facts() const {
           {"frames", static_cast<double>(sheet.frame_count())},
           {"membrane_stiffness", sheet.material.membrane_stiffness()},
           {"bending_stiffness", sheet.material.bending_stiffness()}};
+}
+
+std::vector<Artifact> PaperScene::files_of(Frame& frame) const {
+  add_drawn_surface(frame);
+  return {};
 }
 
 Sheet make_sheet(const PaperSceneOptions& options, const Pattern& pattern, std::uint64_t seed) {

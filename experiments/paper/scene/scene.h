@@ -21,6 +21,8 @@ class PaperScene final : public ProcessScene {
   double fold_radius = 0.03;  ///< of the discs within which folds cancel (m)
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// No files: the part "drawn", of every method alike.
+  [[nodiscard]] std::vector<Artifact> files_of(Frame& frame) const override;
 };
 
 /// The sheet that the options describe. @throws Error  naming the key

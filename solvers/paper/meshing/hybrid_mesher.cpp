@@ -16,6 +16,7 @@
 #include "models/paper/sheet/pattern_locator.h"
 #include "models/paper/tear/frame.h"
 #include "solvers/paper/hybrid_frame.h"
+#include "solvers/paper/meshing/refinement.h"
 #include "solvers/paper/meshing/ruling_field.h"
 #include "solvers/paper/sheet/compression.h"
 #include "solvers/paper/sheet/invariants.h"
@@ -49,6 +50,9 @@ constexpr int kReview = 5;
 constexpr double kWorse = 2;
 /// Longest way of a sheet of which a change of the mesh may move it a part, in seeding distances.
 constexpr double kLongestWay = 0.625;
+/// Shortest edge that halving makes, over that of a lattice halved as often: lattices are cut by
+/// rulings.
+constexpr double kShortest = 0.8;
 /// How far a new singular point is moved out of the sheet, in seeding distances.
 constexpr double kDent = 0.05;
 
@@ -160,7 +164,7 @@ void HybridMesher::stepped(const Sheet& sheet, ShellStepper& stepper, ShellState
   std::optional<Snapshot> before;
   const auto follow = [&](ShellState& torn) {
     before = snapshot(torn);
-    tear_mesh(sheet, torn, context);
+    tear_mesh(torn);
   };
   const auto take_back = [&] {
     ShellState whole;
@@ -171,8 +175,10 @@ void HybridMesher::stepped(const Sheet& sheet, ShellStepper& stepper, ShellState
                  {follow, take_back}, stepper, state);
 }
 
-/// Makes the mesh of the tears as they are now. Nothing else of it changes but what they touch.
-void HybridMesher::tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context) {
+/// Makes the mesh of the tears as they are now. Nothing else of it changes but what they touch. It
+/// is not projected: the sheet relaxes next, in which strain goes at once, while what bending the
+/// projection makes of it takes long to go.
+void HybridMesher::tear_mesh(ShellState& state) {
   pattern_ = tearing_->tears().torn();
   looks_.wake();
   guide_.reset();
@@ -180,7 +186,6 @@ void HybridMesher::tear_mesh(const Sheet& sheet, ShellState& state, RunContext& 
   follow_tears(tearing_->tears(), state.time, options_, pen);
   remesh();
   state = transfer_state(state, mesh_.mesh);
-  if (options_.projection) project(sheet, kRemeshedIterations, state, context);
 }
 
 /// What happens in every frame: singular points yield, rulings age and are counted flat.
@@ -420,14 +425,35 @@ void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunCo
   if (options_.projection) project(sheet, effort, state, context);
 }
 
-/// Neither the change nor the structure before it can follow the handles: other draws of singular
-/// points, with patience. The least strained of all stays.
+/// Makes the mesh finer where the sheet strains whatever its rulings are. False, and everything as
+/// it was, where it is as fine as it may be or strains no less then.
+bool HybridMesher::refine(const Sheet& sheet, const Snapshot& before, ShellState& state,
+                          RunContext& context) {
+  if (options_.refinements == 0) return false;
+  const double shortest = kShortest * std::ldexp(options_.flat_size, -options_.refinements);
+  const std::vector<FinePlace> places =
+      strained_places(state, options_.accepted_strain, shortest, structure_.fine_places);
+  if (places.empty()) return false;
+  restore(before, state);
+  structure_.fine_places.insert(structure_.fine_places.end(), places.begin(), places.end());
+  remesh();
+  carry(sheet, state, structure_.singular_points.size(), context);
+  events_ = {};
+  events_.changed = true;
+  project(sheet, options_.last_iterations, state, context);
+  if (strains()) give_up();
+  return true;
+}
+
+/// Neither the change nor the structure before it can follow the handles: a finer mesh, then other
+/// draws of singular points, with patience. The least strained of all stays.
 bool HybridMesher::last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                                const Snapshot& before, const Snapshot* tried, ShellState& state,
                                RunContext& context) {
   strains_unchanged_ = true;
   keep(sheet, options_.last_iterations, state, context);
   if (!strains()) return false;
+  if (refine(sheet, before, state, context)) return true;
   if (tried == nullptr) {
     give_up();
     return false;

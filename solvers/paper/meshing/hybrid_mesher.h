@@ -54,7 +54,7 @@ class HybridMesher final : public SheetMesher {
   void restore(const Snapshot& before, ShellState& state);
 
   void take_scene(const Sheet& sheet);
-  void tear_mesh(const Sheet& sheet, ShellState& state, RunContext& context);
+  void tear_mesh(ShellState& state);
   [[nodiscard]] RulingEditor editor();
   void remesh();
   void attend(const Sheet& sheet, const ShellStepper& stepper, ShellState& state);
@@ -72,6 +72,7 @@ class HybridMesher final : public SheetMesher {
                   int effort, const Snapshot& before, ShellState& state, RunContext& context);
   [[nodiscard]] bool strains() const;
   void keep(const Sheet& sheet, int effort, ShellState& state, RunContext& context);
+  bool refine(const Sheet& sheet, const Snapshot& before, ShellState& state, RunContext& context);
   bool last_resort(const Sheet& sheet, const std::vector<DemandGroup>& groups,
                    const Snapshot& before, const Snapshot* tried, ShellState& state,
                    RunContext& context);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -23,9 +24,10 @@ using Eigen::Vector2d;
 /// room for one: beside it a step of a tear is not much shorter than the edges around.
 constexpr double kRing = 0.3, kRingRoom = 0.5;
 
-/// Lattice points that are half a `flat_size` away from border, rulings and every vertex.
+/// Lattice points that are half a `flat_size` away from border, rulings and every vertex, where
+/// `wanted`.
 void add_lattice(const PaperStructure& structure, const Pattern& pattern, double flat_size,
-                 PointSet& set) {
+                 const std::function<bool(const Vector2d&)>& wanted, PointSet& set) {
   const Eigen::AlignedBox2d box = bounding_box(pattern);
   const Vector2d low = box.min(), high = box.max(), size = box.sizes();
   const double row_height = flat_size * std::numbers::sqrt3 / 2;
@@ -35,7 +37,9 @@ void add_lattice(const PaperStructure& structure, const Pattern& pattern, double
     for (int i = 0; i <= columns; ++i) {
       const Vector2d p((low.x() + high.x()) / 2 + (i - columns / 2 + (j % 2) * 0.5) * flat_size,
                        (low.y() + high.y()) / 2 + (j - rows / 2) * row_height);
-      if (!contains(pattern, p) || nearest_on_border(pattern, p).distance < flat_size / 2) continue;
+      if (!wanted(p) || !contains(pattern, p) ||
+          nearest_on_border(pattern, p).distance < flat_size / 2)
+        continue;
       const auto near = [&](const Vector2d& q) { return (p - q).norm() < flat_size / 2; };
       const auto near_ruling = [&](const Ruling& r) {
         return distance_to_segment(p, r.a, r.b) < flat_size / 2;
@@ -46,6 +50,35 @@ void add_lattice(const PaperStructure& structure, const Pattern& pattern, double
       }
       set.add(p);
     }
+  }
+}
+
+/// Reach of a fine place, in its edges.
+constexpr double kReach = 2;
+
+/// The lattice of each fine place.
+void add_fine_lattices(const PaperStructure& structure, const Pattern& pattern, PointSet& set) {
+  for (const FinePlace& place : structure.fine_places) {
+    const auto near = [&](const Vector2d& p) {
+      return (p - place.centre).norm() < kReach * place.edge;
+    };
+    add_lattice(structure, pattern, place.edge, near, set);
+  }
+}
+
+/// Points of the border about fine places.
+void add_fine_border(const PaperStructure& structure, const Pattern& pattern, PointSet& set) {
+  const auto divide = [&](const FinePlace& place, const Vector2d& a, const Vector2d& b) {
+    const int parts = static_cast<int>(std::ceil((b - a).norm() / place.edge));
+    for (int k = 1; k < parts; ++k) {
+      const Vector2d p = a + (b - a) * k / parts;
+      if ((p - place.centre).norm() >= kReach * place.edge) continue;
+      const auto near = [&](const Vector2d& q) { return (p - q).norm() < place.edge / 2; };
+      if (std::none_of(set.points().begin(), set.points().end(), near)) set.add(p);
+    }
+  };
+  for (const FinePlace& place : structure.fine_places) {
+    each_loop_edge(pattern, [&](const Vector2d& a, const Vector2d& b) { divide(place, a, b); });
   }
 }
 
@@ -163,10 +196,13 @@ RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& patter
   result.singular_vertices = add_structure_points(structure, pattern, anchors, set);
   for (const Ruling& r : structure.rulings) divide_ruling(r, anchors, sizes, set);
   add_rings(structure, sizes, set);
+  add_fine_border(structure, pattern, set);
   const std::vector<std::vector<int>> loops = border_chains(pattern, sizes.flat, tolerance, set);
   std::vector<Eigen::Vector2i> segments = cut_segments(pattern, sizes.flat, tolerance, set);
   const std::vector<Eigen::Vector2i> lips = segments;
-  add_lattice(structure, pattern, sizes.flat, set);
+  add_fine_lattices(structure, pattern, set);
+  add_lattice(
+      structure, pattern, sizes.flat, [](const Vector2d&) { return true; }, set);
 
   for (const Ruling& r : structure.rulings) {
     result.ruling_paths.push_back(points_along(set.points(), r.a, r.b, tolerance));

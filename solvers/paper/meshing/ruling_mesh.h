@@ -29,9 +29,10 @@ struct MeshSizes {
 /// Constrained Delaunay triangulation with the rulings as edges, from scratch.
 ///
 /// Vertices are the corners of the pattern and its holes, the anchors, the ends of rulings and the
-/// singular points; rulings are divided evenly; where the ground is flat, also the border at most
-/// `flat` apart and a hexagonal lattice of that size, at least half of it away from everything
-/// else. A pure function of its input: the same structure has the same mesh.
+/// singular points; rulings are divided evenly; about fine places border and a lattice of their
+/// edge; where the ground is flat, also the border at most `flat` apart and a hexagonal lattice of
+/// that size, at least half of it away from everything else. A pure function of its input: the same
+/// structure has the same mesh.
 RulingMesh mesh_structure(const PaperStructure& structure, const Pattern& pattern,
                           const std::vector<Eigen::Vector2d>& anchors, const MeshSizes& sizes);
 

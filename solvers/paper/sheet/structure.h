@@ -48,6 +48,13 @@ struct SingularPoint {
   std::optional<int> tear = {};  ///< whose tip it is
 };
 
+/// A place about which the mesh is finer than elsewhere, because the sheet strained there whatever
+/// its rulings were: within two edges of it, edges are that long.
+struct FinePlace {
+  Eigen::Vector2d centre;  ///< in the pattern (m)
+  double edge = 0;         ///< m
+};
+
 /// The geometric layer of the hybrid method: what the sheet is made of at one time.
 ///
 /// The rulings and singular points are the state; pieces and border points follow from them and
@@ -56,6 +63,7 @@ struct PaperStructure {
   std::vector<Ruling> rulings;
   std::vector<PaperPiece> pieces;
   std::vector<SingularPoint> singular_points;
+  std::vector<FinePlace> fine_places;
   std::vector<std::vector<int>>
       border_points;      ///< singular points on each edge of the pattern, in order
   int next_piece_id = 0;  ///< that the next new piece gets

@@ -50,6 +50,11 @@ void write_structure(const PaperStructure& structure, StateWriter& out) {
     out.number(piece.id);
   }
   out.number(structure.next_piece_id);
+  out.number(structure.fine_places.size());
+  for (const FinePlace& place : structure.fine_places) {
+    write_point(place.centre, out);
+    out.number(place.edge);
+  }
 }
 
 PaperStructure read_structure(StateReader& in) {
@@ -80,6 +85,11 @@ PaperStructure read_structure(StateReader& in) {
     piece.id = in.number<int>();
   }
   structure.next_piece_id = in.number<int>();
+  structure.fine_places.resize(in.count());
+  for (FinePlace& place : structure.fine_places) {
+    place.centre = read_point(in);
+    place.edge = in.number<double>();
+  }
   return structure;
 }
 
