@@ -99,6 +99,18 @@ double path_distance(const TearPath& p, const TearPath& q) {
   return most;
 }
 
+PathComparison compare_paths(const TearPath& path, const TearPath& reference) {
+  const double length = std::min(path_length(path), path_length(reference));
+  if (!(length > 0)) throw Error("path of a tear has no length", "tear path", "above 0 m");
+  const TearPath p = first_part(path, length), q = first_part(reference, length);
+  PathComparison result;
+  result.distance = path_distance(p, q);
+  for (const Vector2d& x : p) result.drift = std::max(result.drift, distance_to_path(x, q));
+  result.drift /= length;
+  result.deviation = chord_angle_deg(p, q.back() - q.front());
+  return result;
+}
+
 double fracture_energy(const std::vector<TearPath>& paths, const TearToughness& toughness,
                        double thickness) {
   double sum = 0;

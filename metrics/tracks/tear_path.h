@@ -30,6 +30,16 @@ double chord_angle_deg(const TearPath& path, const Eigen::Vector2d& direction);
 /// Farthest that a point of the path lies from its chord, over the chord's length: 0 when straight.
 double path_bow(const TearPath& path);
 
+/// How a path keeps to a reference, both as far as the shorter of them goes.
+struct PathComparison {
+  double distance = 0;   ///< Hausdorff distance (m)
+  double drift = 0;      ///< farthest that a point of the path lies from the reference, over the
+                         ///< length compared: sin of the angle for two lines from one point
+  double deviation = 0;  ///< angle between the chords (degrees): 0 for parallel lines
+};
+/// @throws Error  when one is empty or has no length
+PathComparison compare_paths(const TearPath& path, const TearPath& reference);
+
 /// Farthest that a point of either path lies from the other (Hausdorff distance, m).
 /// @throws Error  when one is empty
 double path_distance(const TearPath& p, const TearPath& q);

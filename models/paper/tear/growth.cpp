@@ -12,6 +12,7 @@
 #include "core/geometry/planar.h"
 #include "core/mesh.h"
 #include "models/paper/shell/relaxation.h"
+#include "models/paper/tear/hoop_tension.h"
 #include "models/paper/tear/lips.h"
 
 namespace geoprior::paper {
@@ -39,6 +40,9 @@ constexpr int kDirections = 720;
 // Ours, chosen: what a tear does between two time steps.
 /// Steps of all tears after one time step.
 constexpr int kMostSteps = 10;
+/// Most time steps that are not looked at after others in vain: of a sheet that swings most were,
+/// and rested for nothing. A hand goes a fraction of a millimetre in them.
+constexpr int kMostWait = 3;
 /// Of the implicit steps from rest that a sheet relaxes in (s).
 constexpr double kRelaxTime = 1e-3;
 /// Of them, after a tear has grown; and most of them, while the sheet has more energy than before.
@@ -72,6 +76,23 @@ void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCan
   for (TearCandidate& place : places) place.on_flaw = true;
 }
 
+constexpr int kNone = std::numeric_limits<int>::min();
+
+/// Tears that have run into a hole, less those that leave it; kNone: no tear ends at it.
+int tears_into(const std::vector<Vector2d>& loop, const Tears& tears) {
+  const double same = kSame * width(tears.torn());
+  Pattern hole;
+  hole.border = loop;
+  const auto on = [&](const Vector2d& p) { return nearest_on_loops(hole, p).distance <= same; };
+  int ended = 0, left = 0;
+  for (const Tear& tear : tears.all()) {
+    if (tear.path.size() < 2) continue;
+    if (tear.ended && on(tear.tip())) ++ended;
+    if (on(tear.path.front())) ++left;
+  }
+  return ended == 0 ? kNone : ended - left;
+}
+
 }  // namespace
 
 std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears) {
@@ -81,6 +102,13 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
   }
   for (std::size_t k = 0; k < sheet.pattern.loop_count(); ++k) {
     const std::vector<Vector2d>& loop = sheet.pattern.loop(k);
+    const int open = k == 0 ? 0 : tears_into(loop, tears);
+    if (open > 0) {
+      TearCandidate candidate{loop[0], std::nullopt};
+      candidate.hole = static_cast<int>(k);
+      candidates.push_back(candidate);
+    }
+    if (k > 0 && open != kNone) continue;
     const std::size_t n = loop.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vector2d in = loop[i] - loop[(i + n - 1) % n], out = loop[(i + 1) % n] - loop[i];
@@ -92,6 +120,15 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
       candidates.push_back({handle.points[0], std::nullopt});
   }
   return candidates;
+}
+
+bool is_on_entered_hole(const Sheet& sheet, const Tears& tears, const Vector2d& p) {
+  const double same = kSame * width(tears.torn());
+  return std::ranges::any_of(sheet.pattern.holes, [&](const std::vector<Vector2d>& loop) {
+    Pattern hole;
+    hole.border = loop;
+    return nearest_on_loops(hole, p).distance <= same && tears_into(loop, tears) != kNone;
+  });
 }
 
 TearGrowth::TearGrowth(const Sheet& sheet, const TearOptions& options)
@@ -167,17 +204,37 @@ std::optional<TipPull> TearGrowth::pull_on(const TearCandidate& candidate, int v
   return pull;
 }
 
-std::optional<TearGrowth::Growing> TearGrowth::look_at(const TearCandidate& candidate,
+/// Of a hole it is a place once given up, and what is nearer to it than a step.
+bool TearGrowth::is_given_up(const TearCandidate& candidate) const {
+  const double same = candidate.hole ? options_.step : kSame * width(sheet_.pattern);
+  return std::ranges::any_of(
+      given_up_, [&](const Vector2d& p) { return (p - candidate.place).norm() <= same; });
+}
+
+/// Takes the candidate of a hole to where its border is stretched most; the pull is that on the
+/// vertex there, about which a J integral over a large piece depends little on where it is.
+std::optional<TipPull> TearGrowth::pull_of(TearCandidate& candidate, const ShellStepper& stepper,
+                                           const ShellState& state,
+                                           const MeshNeighbours& neighbours) const {
+  std::optional<int> vertex;
+  if (candidate.hole) {
+    const auto peak =
+        greatest_hoop_tension(sheet_, state, neighbours, sheet_.pattern.loop(*candidate.hole));
+    if (!peak) return {};
+    candidate.place = peak->place;
+    vertex = peak->vertex;
+  } else {
+    vertex = vertex_at(state.mesh, candidate.place, kSame * width(sheet_.pattern));
+  }
+  if (!vertex || is_given_up(candidate)) return {};
+  return pull_on(candidate, *vertex, stepper, state, neighbours);
+}
+
+std::optional<TearGrowth::Growing> TearGrowth::look_at(TearCandidate candidate,
                                                        const ShellStepper& stepper,
                                                        const ShellState& state,
                                                        const MeshNeighbours& neighbours) const {
-  const double same = kSame * width(sheet_.pattern);
-  for (const Vector2d& p : given_up_) {
-    if ((p - candidate.place).norm() <= same) return {};
-  }
-  const auto vertex = vertex_at(state.mesh, candidate.place, same);
-  if (!vertex) return {};
-  const auto pull = pull_on(candidate, *vertex, stepper, state, neighbours);
+  const auto pull = pull_of(candidate, stepper, state, neighbours);
   if (!pull) return {};
   Growing growing{candidate, *pull, direction_of(*pull, candidate.place), 0};
   if (candidate.tear) {
@@ -295,6 +352,10 @@ void TearGrowth::take_step(const Growing& growing, const Follower& follower, She
 int TearGrowth::grow(const Candidates& candidates, const Follower& follower, ShellStepper& stepper,
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
+  if (wait_ > 0) {
+    --wait_;
+    return 0;
+  }
   for (int steps = 0; steps < kMostSteps; ++steps) {
     const Eigen::MatrixX3i& now = state.mesh.triangles;
     if (!neighbours_ || !same_triangles(neighbours_->triangles, now)) {
@@ -314,7 +375,11 @@ int TearGrowth::grow(const Candidates& candidates, const Follower& follower, She
     std::optional<Growing> strongest;
     for (std::size_t i = 0; !strongest && i < pulled.size(); ++i)
       strongest = at_rest(pulled[i], stepper, state, neighbours);
-    if (!strongest) return steps;
+    if (!strongest) {
+      in_vain_ = steps > 0 || pulled.empty() ? 0 : std::min(in_vain_ + 1, kMostWait);
+      wait_ = in_vain_;
+      return steps;
+    }
     take_step(*strongest, follower, stepper, state);
   }
   return kMostSteps;
@@ -330,6 +395,8 @@ void TearGrowth::save(StateWriter& out) const {
   out.number(totals_.steps);
   out.number(totals_.given_up);
   out.number(last_pull_);
+  out.number(in_vain_);
+  out.number(wait_);
 }
 
 void TearGrowth::load(StateReader& in) {
@@ -341,6 +408,8 @@ void TearGrowth::load(StateReader& in) {
   totals_.steps = in.number<int>();
   totals_.given_up = in.number<int>();
   last_pull_ = in.number<LastPull>();
+  in_vain_ = in.number<int>();
+  wait_ = in.number<int>();
 }
 
 }  // namespace geoprior::paper

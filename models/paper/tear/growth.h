@@ -19,16 +19,25 @@ struct TearCandidate {
   Eigen::Vector2d place;
   std::optional<int> tear;
   bool on_flaw = false;  ///< it tears by the tension there, from a flaw: nothing concentrates it
+  /// The hole, at which a tear has ended, on whose border it lies where the tension along that is
+  /// greatest (`greatest_hoop_tension`); `place` is then known when the sheet has been looked at.
+  std::optional<int> hole = {};
 };
 
 /// Tips of tears, corners of the border at which the sheet lies on the larger side, and places
-/// where it is held: those of the thesis' candidates that need no structure.
+/// where it is held: those of the thesis' candidates that need no structure. Of a hole that a tear
+/// has run into and none has left, not its corners, which are its polygon's, but the place where
+/// its border is stretched most.
 std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tears);
+
+/// Whether a point lies on the border of a hole that a tear has run into.
+bool is_on_entered_hole(const Sheet& sheet, const Tears& tears, const Eigen::Vector2d& p);
 
 /// Tears that grow while the energy they release exceeds what the paper opposes (Griffith; thesis
 /// 3.2.2): E_r of `TipPull::released` against E_f = K T, of the sheet at rest: a pull that goes,
 /// or does not settle, when the sheet relaxes tears nothing. After each step of a tear the sheet is
-/// meshed anew and relaxes.
+/// meshed anew and relaxes. While a sheet swings, its pulls come and go: after one, two, three time
+/// steps in a row in vain, as many are not looked at.
 class TearGrowth {
  public:
   TearGrowth(const Sheet& sheet, const TearOptions& options);
@@ -76,11 +85,15 @@ class TearGrowth {
   };
   [[nodiscard]] double nearest_tip(const TearCandidate& candidate) const;
   [[nodiscard]] double clear_reach(const TearCandidate& candidate, double time) const;
+  [[nodiscard]] std::optional<TipPull> pull_of(TearCandidate& candidate,
+                                               const ShellStepper& stepper, const ShellState& state,
+                                               const MeshNeighbours& neighbours) const;
+  [[nodiscard]] bool is_given_up(const TearCandidate& candidate) const;
   [[nodiscard]] std::optional<TipPull> pull_on(const TearCandidate& candidate, int vertex,
                                                const ShellStepper& stepper, const ShellState& state,
                                                const MeshNeighbours& neighbours) const;
-  [[nodiscard]] std::optional<Growing> look_at(const TearCandidate& candidate,
-                                               const ShellStepper& stepper, const ShellState& state,
+  [[nodiscard]] std::optional<Growing> look_at(TearCandidate candidate, const ShellStepper& stepper,
+                                               const ShellState& state,
                                                const MeshNeighbours& neighbours) const;
   [[nodiscard]] std::optional<Growing> at_rest(Growing growing, ShellStepper& stepper,
                                                ShellState state,
@@ -99,6 +112,8 @@ class TearGrowth {
   std::vector<Eigen::Vector2d> given_up_;     ///< places where no tear can start or go on
   Totals totals_;
   LastPull last_pull_;
+  int in_vain_ = 0;  ///< time steps in a row whose pulls were gone once the sheet was at rest
+  int wait_ = 0;     ///< time steps until candidates are looked at again
 };
 
 }  // namespace geoprior::paper

@@ -231,6 +231,12 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
   return pull;
 }
 
+Eigen::Matrix2d membrane_tension(const Sheet& sheet, const ShellState& state, int triangle) {
+  const double area = pattern_area(state.mesh, triangle);
+  const auto gradient = shape_gradients(state.mesh, triangle, area);
+  return stress(sheet, state, triangle, gradient, area).second_piola_kirchhoff / area;
+}
+
 std::optional<TipPull> pull_on_flaw(const Sheet& sheet, const ShellState& state,
                                     const MeshNeighbours& neighbours, int vertex, double flaw) {
   constexpr double kEdgeCrack = 1.12;

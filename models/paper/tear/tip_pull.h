@@ -78,6 +78,9 @@ std::optional<TipPull> pull_at(const Sheet& sheet, const ShellStepper& stepper,
                                const ShellState& state, const MeshNeighbours& neighbours,
                                int vertex, const PullOptions& options, double least_release = 0);
 
+/// Second Piola-Kirchhoff stress of the membrane of a triangle, times the thickness (N/m).
+Eigen::Matrix2d membrane_tension(const Sheet& sheet, const ShellState& state, int triangle);
+
 /// The pull at a vertex where nothing concentrates the stress, on a flaw of the sheet there: a slit
 /// across the largest tension s that the mean membrane stress of the triangles about the vertex has
 /// in any direction. It releases G = q^2 pi a s^2 / E a unit of area, with a the slit's length from

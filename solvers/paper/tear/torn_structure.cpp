@@ -164,8 +164,9 @@ std::vector<TearCandidate> tear_candidates(const Sheet& sheet, const Tears& tear
                                            const PaperStructure& structure) {
   std::vector<TearCandidate> candidates = plain_candidates(sheet, tears);
   for (const Vector2d& p : junctions(structure)) {
-    // A lip is no border that has flaws of its own.
-    if (distance_to_cuts(tears.torn(), p) > kOnLip * width(tears.torn()))
+    // A lip is no border that has flaws of its own; of a hole with a tear the place is known.
+    if (distance_to_cuts(tears.torn(), p) > kOnLip * width(tears.torn()) &&
+        !is_on_entered_hole(sheet, tears, p))
       candidates.push_back({p, std::nullopt, true});
   }
   return candidates;

@@ -53,6 +53,36 @@ TEST(TearPath, AngleBowAndDistanceOfSimplePaths) {
   EXPECT_THROW(static_cast<void>(path_distance(arc, {})), Error);
 }
 
+TEST(TearPath, ParallelLinesAreTheirDistanceApart) {
+  // 10 mm beside a line of 0.2 m, in steps of another length and twice as far: a twentieth.
+  const TearPath line{{0, 0}, {0.2, 0}};
+  TearPath beside;
+  for (int i = 0; i <= 100; ++i) beside.emplace_back(i * 4e-3, 0.01);
+  const PathComparison c = compare_paths(beside, line);
+  EXPECT_NEAR(c.distance, 0.01, 1e-12);
+  EXPECT_NEAR(c.drift, 0.05, 1e-12);
+  EXPECT_NEAR(c.deviation, 0, 1e-9);
+  const PathComparison same = compare_paths(line, line);
+  EXPECT_EQ(same.distance, 0);
+  EXPECT_EQ(same.drift, 0);
+  EXPECT_EQ(same.deviation, 0);
+}
+
+TEST(TearPath, LinesFromOnePointDriftBySinOfTheirAngle) {
+  const double angle = std::numbers::pi / 18;
+  const TearPath line{{0, 0}, {0.1, 0}};
+  const TearPath turned{{0, 0}, {0.3 * std::cos(angle), 0.3 * std::sin(angle)}};
+  const PathComparison c = compare_paths(turned, line);
+  EXPECT_NEAR(c.drift, std::sin(angle), 1e-12);
+  EXPECT_NEAR(c.deviation, 10, 1e-9);
+  // What a path drifts does not depend on its unit, nor on where the plane's origin is.
+  TearPath large, moved;
+  for (const Vector2d& p : turned) large.push_back(7 * p);
+  for (const Vector2d& p : line) moved.push_back(7 * p);
+  EXPECT_NEAR(compare_paths(large, moved).drift, c.drift, 1e-12);
+  EXPECT_THROW(static_cast<void>(compare_paths({{0, 0}}, line)), Error);
+}
+
 TEST(TearPath, OnsetForceIsTheClosedForm) {
   // K e / (2 cos(theta / 2)): a right angle at C; legs of a trouser side by side.
   EXPECT_NEAR(onset_force({0, 0.1}, kA, kB, 1e4, 1e-4), 1 / (2 * std::cos(std::numbers::pi / 4)),
