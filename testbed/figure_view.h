@@ -77,6 +77,7 @@ struct FigureView {
   /// Adds the same panels in plain material: flat, without colours, edges and overlays, under a
   /// light that grazes.
   bool plain = false;
+  std::string plain_part;  ///< what they show, where a frame has it; empty or absent: `part`
   std::optional<std::array<double, 3>> target;
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};

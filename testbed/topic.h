@@ -38,7 +38,8 @@ class Scene {
   /// What shows best what happens, where the experiment file says nothing of the camera; recorded.
   [[nodiscard]] virtual std::optional<Camera> camera() const { return std::nullopt; }
   /// Files that the user asked for beside a frame of a process, made while no clock runs. They may
-  /// add parts to the frame, or be all that becomes of one.
+  /// add parts to the frame, or be all that becomes of one; what is only looked at may be a part
+  /// that is added here too.
   /// @throws Error  when one cannot be made: the variant has failed
   [[nodiscard]] virtual std::vector<Artifact> files_of(Frame& /*frame*/) const { return {}; }
   /// False where methods may do the work of several frames in one: times are compared by whole

@@ -214,6 +214,8 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
   v.value("plain", t.plain,
           {.doc = "adds the same panels plain and flat under lights that graze: under each row, "
                   "beside it where it has one column"});
+  v.value("plain_part", t.plain_part,
+          {.doc = "part that the plain panels show where the frames have it; absent: `part`"});
   v.value("target", table.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
   v.value("direction", t.direction, {.doc = "direction from the target to the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});

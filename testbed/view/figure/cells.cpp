@@ -125,6 +125,7 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
   }
   cell.parameter = frame->parameter;
   cell.part = require_part(*frame, view.part, run);
+  if (view.plain && !view.plain_part.empty()) cell.plain = load_part(*frame, view.plain_part, run);
   for (const std::string& overlay : view.overlays) {
     if (auto part = load_part(*frame, overlay, run)) {
       cell.overlays.push_back({overlay, *std::move(part)});

@@ -27,6 +27,7 @@ struct FigureCell {
   std::string label;  ///< of the variant, or of the state or case when those stand side by side
   std::optional<double> parameter;  ///< of the frame that is drawn
   std::optional<Part> part;  ///< absent: the variant has no such frame (it failed, or was left out)
+  std::optional<Part> plain;      ///< shown in plain panels; absent: `part` is
   std::string note = "no frame";  ///< stands in place of the part
   std::vector<NamedPart> overlays;
   std::optional<Part> obstacles;  ///< part "obstacles" of the frame: drawn faintly, never fitted

@@ -12,6 +12,7 @@
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/run_folder.h"
 #include "testbed/view/figure/named_values.h"
+#include "testbed/view/panel/drawable.h"
 #include "testbed/view/panel/section.h"
 #include "testbed/view/view_window.h"
 
@@ -186,11 +187,11 @@ TextStyle fitted(const std::string& text, TextStyle style, int room) {
   return style;
 }
 
-/// The look of the panels beside those that are coloured.
-PanelStyle plain_style(const PanelStyle& style) {
+/// The look of the panels beside those that are coloured: a part with normals of its own is smooth.
+PanelStyle plain_style(const PanelStyle& style, const Part& part) {
   PanelStyle plain;
   plain.material = style.material;
-  plain.flat = true;
+  plain.flat = !has_normals(part);
   plain.raking = true;
   return plain;
 }
@@ -212,8 +213,9 @@ Picture draw_cell(const DrawnPanel& panel, const FigureView& view, const BlockLo
   parts.parts = {&*cell.part};
   if (cell.obstacles) parts.obstacles = {&*cell.obstacles};
   if (panel.showing == Showing::plain) {
-    return draw_panel(parts, look.window, plain_style(look.style), layout.panel_width,
-                      layout.panel_height);
+    if (cell.plain) parts.parts = {&*cell.plain};
+    return draw_panel(parts, look.window, plain_style(look.style, *parts.parts.front()),
+                      layout.panel_width, layout.panel_height);
   }
   for (const NamedPart& overlay : cell.overlays) {
     parts.overlays.push_back(

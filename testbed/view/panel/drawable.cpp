@@ -48,8 +48,11 @@ vtkSmartPointer<vtkPolyData> with_points(const Part& part) {
   return data;
 }
 
-/// Normals of the welded surface, so that texture seams do not show as creases.
-Eigen::MatrixX3d seamless_normals(const Part& part) {
+constexpr const char* kNormal = "normal";
+
+/// The part's own, or those of the welded surface, so that texture seams do not show as creases.
+Eigen::MatrixX3d smooth_normals(const Part& part) {
+  if (has_normals(part)) return part.find_array(kNormal, NamedArray::On::points)->values;
   const Weld weld = weld_by_position({part.points, part.triangles});
   const Eigen::MatrixX3d welded = vertex_normals(weld.mesh);
   Eigen::MatrixX3d normals(part.points.rows(), 3);
@@ -68,7 +71,7 @@ vtkSmartPointer<vtkPolyData> surface(const Part& part, const std::string& color_
   data->SetPolys(triangles);
   add_scalars(part, color_by, data);
   if (flat) return data;
-  const Eigen::MatrixX3d normals = seamless_normals(part);
+  const Eigen::MatrixX3d normals = smooth_normals(part);
   vtkNew<vtkDoubleArray> array;
   array->SetNumberOfComponents(3);
   array->SetNumberOfTuples(normals.rows());
@@ -154,6 +157,11 @@ vtkSmartPointer<vtkPolyData> grid(const Part& part, const std::string& color_by)
 }
 
 }  // namespace
+
+bool has_normals(const Part& part) {
+  const NamedArray* array = part.find_array(kNormal, NamedArray::On::points);
+  return part.kind == Part::Kind::triangles && array != nullptr && array->values.cols() == 3;
+}
 
 vtkSmartPointer<vtkPolyData> to_drawable(const Part& part, const std::string& color_by,
                                          double thickness_m, bool flat) {

@@ -29,6 +29,27 @@ TEST(Cells, ObstaclesComeWithTheFrameAndDoNotMoveTheWindow) {
   EXPECT_TRUE(rows[0].cells[0].overlays.empty());
 }
 
+TEST(Cells, PlainPanelsHaveAPartOfTheirOwnWhereTheFrameHasIt) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& variant = record.cases[0].variants[0];
+  VariantRecord extra;
+  extra.name = variant.name;
+  add_frame(extra, folder.path, 0, make_box({-9, -9, -9}, {9, 9, 9}), "drawn");
+  variant.frames[0].files.push_back(extra.frames[0].files[0]);
+  FigureView view;
+  view.at_parameter = 0;
+  view.plain_part = "drawn";
+  const OpenedRun run(folder.path, record);
+  EXPECT_FALSE(collect_cells(run, view).at(0).cells.at(0).plain.has_value()) << "none is asked for";
+  view.plain = true;
+  const auto rows = collect_cells(run, view);
+  ASSERT_TRUE(rows.at(0).cells.at(0).plain.has_value());
+  EXPECT_EQ(rows[0].cells[0].plain->points.maxCoeff(), 9);
+  EXPECT_LT(rows[0].cells[0].part->points.maxCoeff(), 9);
+  EXPECT_FALSE(rows[0].cells.at(1).plain.has_value()) << "it has no such part";
+}
+
 TEST(Cells, AFrameIsDrawnOnceThoughSeveralParametersAreNearestToIt) {
   const TestFolder folder;
   const RunRecord record = make_fake_run(folder.path);

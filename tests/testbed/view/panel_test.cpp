@@ -144,6 +144,22 @@ TEST(Panel, EdgesOverlaysAndBothSidesOfPaperAreSeen) {
   EXPECT_GT(blueness(back.at(60, 80)), blueness(plain.at(60, 80)) + 0.05) << "the back is cooler";
 }
 
+// A square whose array leans the normals at its sides away from each other is shaded as half of a
+// cylinder; without the array it has one tone.
+TEST(Panel, ASurfaceIsShadedByItsOwnNormals) {
+  const Display display;
+  Part part = two_classes();
+  const auto contrast = [&] {
+    const Picture picture = draw_panel({{&part}, {}, {}}, above(), {}, 200, 200);
+    return std::abs(picture.at(60, 100)[1] - picture.at(140, 100)[1]);
+  };
+  EXPECT_LT(contrast(), 3);
+  Eigen::MatrixXd normals(4, 3);
+  normals << -0.6, 0, 0.8, 0.6, 0, 0.8, 0.6, 0, 0.8, -0.6, 0, 0.8;
+  part.arrays.push_back({"normal", "1", NamedArray::On::points, normals});
+  EXPECT_GT(contrast(), 20);
+}
+
 /// Two squares that meet at `degrees` along the picture's direction `axis_degrees`, the sheet
 /// turned by `tilt_degrees` about the picture's horizontal.
 Part folded_sheet(double degrees, double axis_degrees, double tilt_degrees) {

@@ -1,0 +1,261 @@
+#include "core/geometry/curved_triangles.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "core/connectivity.h"
+#include "core/error.h"
+
+namespace geoprior {
+namespace {
+
+using Eigen::Vector3d;
+
+/// An edge as a triangle sees it: its ends and the normals there.
+struct CurvedEdge {
+  Vector3d a, b;
+  Vector3d p, q;
+};
+
+/// Where an edge is bent to, and its normal there.
+struct Middle {
+  Vector3d rise;  ///< from the middle of the chord (m)
+  Vector3d normal;
+};
+
+/// Sums are such that the edge from b to a has the same bits.
+Middle middle_of(const CurvedEdge& edge) {
+  constexpr double kMostFactor = 2;  // of normals 100 degrees apart; beyond there is no arc
+  if (edge.p == edge.q) return {Vector3d::Zero(), edge.p};
+  const Vector3d d = edge.b - edge.a;
+  const double cosine = std::sqrt(std::max(0.0, (1 + edge.p.dot(edge.q)) / 2));
+  const double factor = std::min(kMostFactor, 2 / std::max(1e-12, cosine * (1 + cosine)));
+  const Vector3d s = (edge.p + edge.q) / 2;
+  const double square = d.squaredNorm();
+  const Vector3d normal = square > 0 ? Vector3d(s - 1.5 * d.dot(s) / square * d) : s;
+  return {factor * (d.dot(edge.q) * edge.q - d.dot(edge.p) * edge.p) / 8,
+          normal.squaredNorm() > 0 ? normal.normalized() : edge.p};
+}
+
+struct Corner {
+  int vertex = 0;
+  Vector3d next;      ///< normal of the edge to the next corner, here
+  Vector3d previous;  ///< of the edge from the previous one, here
+};
+
+using Triangle = std::array<Corner, 3>;
+
+/// Normal, at a corner, of a new line from it to a point of the triangle with that normal.
+Vector3d normal_towards(const Corner& corner, const Vector3d& end) {
+  return corner.next == corner.previous ? corner.next : end;
+}
+
+class Sampler {
+ public:
+  Sampler(const TriMesh& mesh, const EdgeNormals& normals, const CurvedSampling& sampling)
+      : sampling_(sampling) {
+    for (const auto& row : mesh.V.rowwise()) place_.emplace_back(row);
+    flat_ = place_;
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+      Triangle& triangle = triangles_.emplace_back();
+      parent_.push_back(t);
+      for (int k = 0; k < 3; ++k) {
+        triangle[k] = {mesh.F(t, k), normals.origin.row(3 * t + k),
+                       normals.tip.row(3 * t + (k + 2) % 3)};
+      }
+    }
+  }
+
+  /// Halves the edges that are bent too much. @return  whether there were any
+  bool refine() {
+    const EdgeConnectivity edges(vertices());
+    middles_.assign(edges.half_edge_count(), {});
+    middle_vertex_.assign(edges.edge_count(), -1);
+    bool any = false;
+    for (int e = 0; e < edges.edge_count(); ++e) any |= halve(edges, e);
+    if (!any) return false;
+    std::vector<Triangle> before;
+    std::vector<int> parents;
+    before.swap(triangles_);
+    parents.swap(parent_);
+    for (std::size_t t = 0; t < before.size(); ++t) {
+      parent_now_ = parents[t];
+      divide(before[t], static_cast<int>(t), edges);
+    }
+    return true;
+  }
+
+  [[nodiscard]] CurvedSurface surface() const;
+
+ private:
+  [[nodiscard]] std::vector<std::array<int, 3>> vertices() const {
+    std::vector<std::array<int, 3>> out;
+    for (const Triangle& t : triangles_) out.push_back({t[0].vertex, t[1].vertex, t[2].vertex});
+    return out;
+  }
+
+  /// Decides from the edge alone, whichever triangle it is looked at from.
+  bool halve(const EdgeConnectivity& edges, int e) {
+    const auto [a, b] = edges.edge(e);
+    Vector3d rise = Vector3d::Zero();
+    double cosine = 1;
+    const auto half_edges = edges.half_edges(e);
+    for (const int h : half_edges) {
+      const Triangle& t = triangles_[h / 3];
+      const Corner& from = t[h % 3];
+      const Corner& to = t[(h + 1) % 3];
+      middles_[h] = middle_of({place_[from.vertex], place_[to.vertex], from.next, to.previous});
+      rise += middles_[h].rise / static_cast<double>(half_edges.size());
+      cosine = std::min(
+          {cosine, from.next.dot(middles_[h].normal), to.previous.dot(middles_[h].normal)});
+    }
+    if ((place_[b] - place_[a]).norm() <= sampling_.shortest) return false;
+    if (rise.norm() <= sampling_.tolerance && cosine >= std::cos(sampling_.angle / 2)) return false;
+    middle_vertex_[e] = static_cast<int>(place_.size());
+    place_.emplace_back((place_[a] + place_[b]) / 2 + rise);
+    flat_.emplace_back((flat_[a] + flat_[b]) / 2);
+    return true;
+  }
+
+  /// A triangle whose edges from corner k are: that to `b` and that from `c`.
+  void add(const Triangle& triangle) {
+    triangles_.push_back(triangle);
+    parent_.push_back(parent_now_);
+  }
+
+  /// The middles of the edges of a triangle, numbered as its corners.
+  void divide(const Triangle& t, int number, const EdgeConnectivity& edges) {
+    std::array<int, 3> split{};
+    int count = 0;
+    for (int k = 0; k < 3; ++k) {
+      split[k] = middle_vertex_[edges.edge_of(3 * number + k)];
+      count += split[k] < 0 ? 0 : 1;
+    }
+    const Middle* m = middles_.data() + 3L * number;
+    if (count == 0) return add(t);
+    if (count == 3) return quarter(t, split, m);
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      if (count == 1 && split[k] >= 0) return halve_triangle(t, k, split[k], m[k].normal);
+      if (count == 2 && split[k] >= 0 && split[next] >= 0) {
+        return cut_corner(t, k, {split[k], split[next]}, {m[k].normal, m[next].normal});
+      }
+    }
+  }
+
+  /// Edge k has a middle: lines from it to the corner opposite.
+  void halve_triangle(const Triangle& t, int k, int middle, const Vector3d& normal) {
+    const Corner &a = t[k], &b = t[(k + 1) % 3], &c = t[(k + 2) % 3];
+    const Vector3d n = normal_towards(c, normal);
+    add({Corner{a.vertex, a.next, a.previous}, Corner{middle, normal, normal},
+         Corner{c.vertex, c.next, n}});
+    add({Corner{middle, normal, normal}, Corner{b.vertex, b.next, b.previous},
+         Corner{c.vertex, n, c.previous}});
+  }
+
+  /// Edge k and the next one have middles: the corner between them is cut off, the rest divided
+  /// along its shorter diagonal.
+  void cut_corner(const Triangle& t, int k, const std::array<int, 2>& middle,
+                  const std::array<Vector3d, 2>& normal) {
+    const Corner &a = t[k], &b = t[(k + 1) % 3], &c = t[(k + 2) % 3];
+    const Corner m{middle[0], normal[0], normal[0]}, n{middle[1], normal[1], normal[1]};
+    add({m, b, n});
+    const double from_a = (place_[a.vertex] - place_[n.vertex]).squaredNorm();
+    const double from_c = (place_[c.vertex] - place_[m.vertex]).squaredNorm();
+    if (from_a <= from_c) {
+      const Vector3d at_a = normal_towards(a, n.next);
+      add({Corner{a.vertex, a.next, at_a}, m, n});
+      add({Corner{a.vertex, at_a, a.previous}, n, c});
+    } else {
+      const Vector3d at_c = normal_towards(c, m.next);
+      add({a, m, Corner{c.vertex, c.next, at_c}});
+      add({m, n, Corner{c.vertex, at_c, c.previous}});
+    }
+  }
+
+  void quarter(const Triangle& t, const std::array<int, 3>& split, const Middle* middle) {
+    Triangle inner;
+    for (int k = 0; k < 3; ++k) inner[k] = {split[k], middle[k].normal, middle[k].normal};
+    for (int k = 0; k < 3; ++k) add({t[k], inner[k], inner[(k + 2) % 3]});
+    add(inner);
+  }
+
+  /// A displacement from the flat triangle, kept within the bound.
+  [[nodiscard]] Vector3d bounded(const Vector3d& u) const {
+    if (!sampling_.farthest) return u;
+    const double ratio = u.norm() / *sampling_.farthest;
+    return u / std::pow(1 + std::pow(ratio, 8), 1.0 / 8);
+  }
+
+  CurvedSampling sampling_;
+  std::vector<Vector3d> place_;
+  std::vector<Vector3d> flat_;  ///< of the same points: where they lie on the flat triangles
+  std::vector<Triangle> triangles_;
+  std::vector<int> parent_;
+  // Of one refinement.
+  std::vector<Middle> middles_;     ///< of each half-edge
+  std::vector<int> middle_vertex_;  ///< of each edge; -1: it is not halved
+  int parent_now_ = -1;
+};
+
+CurvedSurface Sampler::surface() const {
+  CurvedSurface out;
+  std::vector<Vector3d> places(place_.size());
+  for (std::size_t v = 0; v < place_.size(); ++v) {
+    const Vector3d u = bounded(place_[v] - flat_[v]);
+    out.distance = std::max(out.distance, u.norm());
+    places[v] = flat_[v] + u;
+  }
+  using Key = std::array<double, 4>;  // vertex and normal
+  std::map<Key, int> index;
+  std::vector<Key> points;
+  out.mesh.F.resize(triangles_.size(), 3);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const Corner& corner = triangles_[t][k];
+      const Vector3d sum = corner.next + corner.previous;
+      const Vector3d n = corner.next == corner.previous || sum.squaredNorm() == 0
+                             ? corner.next
+                             : Vector3d(sum.normalized());
+      const Key key{static_cast<double>(corner.vertex), n.x(), n.y(), n.z()};
+      const auto [at, is_new] = index.emplace(key, static_cast<int>(points.size()));
+      if (is_new) points.push_back(key);
+      out.mesh.F(static_cast<Eigen::Index>(t), k) = at->second;
+    }
+  }
+  out.mesh.V.resize(points.size(), 3);
+  out.normals.resize(points.size(), 3);
+  for (int i = 0; i < std::ssize(points); ++i) {
+    out.mesh.V.row(i) = places[static_cast<std::size_t>(points[i][0])];
+    out.normals.row(i) << points[i][1], points[i][2], points[i][3];
+  }
+  out.parent = parent_;
+  return out;
+}
+
+}  // namespace
+
+EdgeNormals EdgeNormals::zero(Eigen::Index triangles) {
+  return {Eigen::MatrixX3d::Zero(3 * triangles, 3), Eigen::MatrixX3d::Zero(3 * triangles, 3)};
+}
+
+CurvedSurface curved_surface(const TriMesh& mesh, const EdgeNormals& normals,
+                             const CurvedSampling& sampling) {
+  const Eigen::Index half_edges = 3 * mesh.F.rows();
+  if (normals.origin.rows() != half_edges || normals.tip.rows() != half_edges) {
+    throw Error("has " + std::to_string(normals.origin.rows()) + " and " +
+                    std::to_string(normals.tip.rows()) + " normals",
+                "curved_surface", std::to_string(half_edges) + " half-edges");
+  }
+  constexpr int kMostSteps = 12;
+  Sampler sampler(mesh, normals, sampling);
+  for (int step = 0; step < kMostSteps && sampler.refine(); ++step) {
+  }
+  return sampler.surface();
+}
+
+}  // namespace geoprior
