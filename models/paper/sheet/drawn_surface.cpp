@@ -25,6 +25,10 @@ double doubled_area(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
+bool is_along(const Vector3d& normal, const Vector3d& mean) {
+  return normal.dot(mean) > std::cos(DrawnSurface::kUneven * kDegree);
+}
+
 /// The sheet of a frame with what is asked of its edges.
 class SheetEdges {
  public:
@@ -34,7 +38,7 @@ class SheetEdges {
         plastic_(surface.require_array("plastic_curvature", NamedArray::On::cells, 3).values),
         edges_(mesh_.F),
         normals_(triangle_normals(mesh_)),
-        kind_(surface.find_array("kind", NamedArray::On::cells)) {
+        plane_(plane_triangles(surface)) {
     for (int e = 0; e < edges_.edge_count(); ++e) sharp_.push_back(is_sharp(e));
   }
 
@@ -43,9 +47,7 @@ class SheetEdges {
   [[nodiscard]] bool sharp(int e) const { return sharp_[e]; }
   [[nodiscard]] Vector3d place(int v) const { return mesh_.V.row(v); }
   [[nodiscard]] Vector3d normal(int triangle) const { return normals_.row(triangle); }
-  [[nodiscard]] bool is_plane(int triangle) const {
-    return kind_ != nullptr && kind_->values(triangle, 0) == kFlat;
-  }
+  [[nodiscard]] bool is_plane(int triangle) const { return plane_[triangle]; }
 
   /// Height of the triangle of a half-edge over it (m).
   [[nodiscard]] double width(int h) const {
@@ -67,6 +69,28 @@ class SheetEdges {
   }
 
  private:
+  /// Triangles of flat pieces that are: all of a piece have its normal, up to kUneven.
+  [[nodiscard]] std::vector<bool> plane_triangles(const Part& surface) const {
+    std::vector<bool> plane(mesh_.triangle_count(), false);
+    const NamedArray* kind = surface.find_array("kind", NamedArray::On::cells);
+    const NamedArray* piece = surface.find_array("piece", NamedArray::On::cells);
+    if (kind == nullptr || piece == nullptr) return plane;
+    std::map<double, std::vector<int>> flat;
+    for (int t = 0; t < mesh_.triangle_count(); ++t) {
+      if (kind->values(t, 0) == kFlat) flat[piece->values(t, 0)].push_back(t);
+    }
+    const Eigen::VectorXd areas = triangle_areas(mesh_.V, mesh_.F);
+    for (const auto& [number, triangles] : flat) {
+      Vector3d mean = Vector3d::Zero();
+      for (const int t : triangles) mean += areas[t] * normal(t);
+      const bool is_plane = std::all_of(triangles.begin(), triangles.end(), [&](int t) {
+        return is_along(normal(t), mean.normalized());
+      });
+      for (const int t : triangles) plane[t] = is_plane;
+    }
+    return plane;
+  }
+
   /// Fold that stays when the sheet is let go, of the strip that the edge stands for (rad).
   [[nodiscard]] double yielded_fold(int e) const {
     const auto [u, v] = edges_.edge(e);
@@ -99,7 +123,7 @@ class SheetEdges {
   Eigen::MatrixX3d plastic_;
   EdgeConnectivity edges_;
   Eigen::MatrixX3d normals_;
-  const NamedArray* kind_;
+  std::vector<bool> plane_;
   std::vector<bool> sharp_;
 };
 
@@ -188,9 +212,8 @@ Side side_of(const SheetEdges& sheet, const std::vector<int>& half_edges) {
 
 /// Whether the sheet is as even along a ruling as it says: a mesh may have bent across it since.
 bool is_held(const SheetEdges& sheet, const std::vector<int>& half_edges, const Side& side) {
-  return std::all_of(half_edges.begin(), half_edges.end(), [&](int h) {
-    return sheet.normal(h / 3).dot(side.normal) > std::cos(DrawnSurface::kUneven * kDegree);
-  });
+  return std::all_of(half_edges.begin(), half_edges.end(),
+                     [&](int h) { return is_along(sheet.normal(h / 3), side.normal); });
 }
 
 /// Normal of a ruling for each of its sides; two where it is a crease, none where it is not held.

@@ -20,11 +20,12 @@ namespace geoprior::paper {
 ///
 /// Where the frame has rulings, each has one normal from end to end: that of the plane beside it,
 /// if there is one, else the mean of the strips at its sides, each weighted by one over its width
-/// as the circle through three points asks for. (Not where the triangles beside it turn along it by
-/// more than kUneven from their mean: there the sheet has bent across it.) A corner where two
-/// rulings of different normals meet is an apex: every line from it is straight, with the normal of
-/// its other end. So planes are planes, cylinders have arcs between their rulings, and cones are
-/// straight towards their apex.
+/// as the circle through three points asks for. A corner where two rulings of different normals
+/// meet is an apex: every line from it is straight, with the normal of its other end. So planes are
+/// planes, cylinders have arcs between their rulings, and cones are straight towards their apex.
+/// The simulated sheet need not be what its structure says: where the triangles along a ruling turn
+/// by more than kUneven from their mean, or those of a flat piece do, that one is drawn as any
+/// mesh is.
 ///
 /// The surface stays within kFarthest of the triangles; shading keeps the normals that it would
 /// have without that bound. What it does not know: how wide a crease is (it is a line), and that a
@@ -32,7 +33,7 @@ namespace geoprior::paper {
 struct DrawnSurface {
   static constexpr double kYieldedFold = 12;  ///< plastic curvature times width, at an edge (deg)
   static constexpr double kSharpFold = 75;    ///< deg
-  static constexpr double kUneven = 6;        ///< deg
+  static constexpr double kUneven = 4;        ///< deg
   static constexpr double kFarthest = 5e-4;   ///< m
   static constexpr double kTolerance = 5e-5;  ///< that an edge misses of its curve (m)
   static constexpr double kTurn = 10;         ///< of the normal along an edge (deg)

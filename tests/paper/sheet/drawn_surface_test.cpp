@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/angles.h"
 #include "core/geometry/topology.h"
@@ -192,6 +193,27 @@ TEST(DrawnSurface, RulingsOfAConeAreStraightFromTheApex) {
   }
 }
 
+// A sheet of two rows that is bent across its rulings, which have a vertex in their middle: with
+// one normal from end to end each half would be an S.
+TEST(DrawnSurface, ARulingThatTheSheetHasBentAcrossIsDrawnAsAnyEdge) {
+  ShellMesh mesh = meshes::grid(6, 2, 0.12, 0.06, false);
+  // Uneven strips and rows: on even ones the weights of both rules are the same.
+  mesh.pattern.col(0) = mesh.pattern.col(0).cwiseAbs2() / 0.12;
+  for (int i = 0; i < 7; ++i) mesh.pattern(i + 7, 1) += 0.01 * (i % 2);
+  const Eigen::MatrixX3d x = meshes::rolled(mesh.pattern, 8, std::numbers::pi / 2);
+  const Part surface = surface_of(mesh, x);
+  Part rulings;
+  rulings.kind = Part::Kind::lines;
+  rulings.points = surface.points;
+  for (int i = 1; i < 6; ++i) rulings.lines.push_back({i, i + 7, i + 14});
+  EXPECT_EQ(drawn(surface, &rulings).mesh.V, drawn(surface).mesh.V);
+  // Bent about them it has their normals.
+  const Part right = surface_of(mesh, meshes::rolled(mesh.pattern, 8, 0));
+  rulings.points = right.points;
+  const EdgeNormals with = paper_normals(right, &rulings), without = paper_normals(right, nullptr);
+  EXPECT_GT((with.origin - without.origin).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 // A wavy sheet of irregular triangles with yielded ones among them.
 TEST(DrawnSurface, HasNoCracks) {
   const ShellMesh mesh = meshes::delaunay(8, 8, 0.2, 0.2);
@@ -222,6 +244,7 @@ TEST(DrawnSurface, IsAPartBesideTheSimulatedMeshWhichStaysAsItIs) {
   Eigen::MatrixXd kind = Eigen::MatrixXd::Ones(sheet.mesh.triangle_count(), 1);
   kind.topRows(2).setZero();
   frame.parts["surface"].arrays.push_back({"kind", "1", NamedArray::On::cells, kind});
+  frame.parts["surface"].arrays.push_back({"piece", "1", NamedArray::On::cells, kind});
   const Part before = frame.parts["surface"];
   add_drawn_surface(frame);
   const Part& after = frame.require_part("surface");
@@ -231,7 +254,7 @@ TEST(DrawnSurface, IsAPartBesideTheSimulatedMeshWhichStaysAsItIs) {
   const Part& drawn = frame.require_part("drawn", Part::Kind::triangles);
   const Eigen::MatrixXd& n = drawn.require_array("normal", NamedArray::On::points, 3).values;
   EXPECT_LT((n.rowwise().norm().array() - 1).abs().maxCoeff(), 2 * DrawnSurface::kNormalUnit);
-  EXPECT_EQ(drawn.find_array("piece"), nullptr);
+  EXPECT_NE(drawn.find_array("piece"), nullptr);
   // The plane at the edge is as many triangles as before: it is one.
   const Eigen::VectorXd kinds = drawn.require_array("kind", NamedArray::On::cells, 1).values;
   EXPECT_EQ((kinds.array() == 0).count(), 2);
