@@ -3,10 +3,10 @@
 #include <sstream>
 #include <utility>
 
+#include "experiments/paper/scene/drawn_surface.h"
 #include "experiments/paper/scene/fast_handles.h"
 #include "experiments/paper/scene/make_sheet.h"
 #include "experiments/paper/scene/pulled_apart.h"
-#include "models/paper/sheet/drawn_surface.h"
 #include "models/paper/sheet/valid.h"
 #include "testbed/keyframes.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/paper/scene/drawn_surface.h"
 #include "experiments/paper/topic.h"
-#include "models/paper/sheet/drawn_surface.h"
 #include "testbed/runner/execute.h"
 #include "testbed/runner/opened_run.h"
 #include "tests/testbed/run_fixture.h"

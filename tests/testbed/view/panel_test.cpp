@@ -157,7 +157,7 @@ TEST(Panel, ASurfaceIsShadedByItsOwnNormals) {
   Eigen::MatrixXd normals(4, 3);
   normals << -0.6, 0, 0.8, 0.6, 0, 0.8, 0.6, 0, 0.8, -0.6, 0, 0.8;
   part.arrays.push_back({"normal", "1", NamedArray::On::points, normals});
-  EXPECT_GT(contrast(), 20);
+  EXPECT_GT(contrast(), 12);
 }
 
 /// Two squares that meet at `degrees` along the picture's direction `axis_degrees`, the sheet

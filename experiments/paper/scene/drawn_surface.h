@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/frame.h"
-#include "core/geometry/curved_triangles.h"
+#include "core/geometry/curved/curved_surface.h"
 
 namespace geoprior::paper {
 

@@ -1,4 +1,4 @@
-#include "core/geometry/curved_triangles.h"
+#include "core/geometry/curved/curved_surface.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

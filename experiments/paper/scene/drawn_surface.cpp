@@ -1,4 +1,4 @@
-#include "models/paper/sheet/drawn_surface.h"
+#include "experiments/paper/scene/drawn_surface.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "core/geometry/curved_triangles.h"
+#include "core/geometry/curved/curved_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ double farthest_from_cylinder(const TriMesh& mesh) {
 }
 
 // Chords of 40 degrees have a sagitta of 1 - cos 20 deg = 0.060.
-TEST(CurvedTriangles, ChordsOfACylinderAreDrawnOnTheCylinder) {
+TEST(CurvedSurface, ChordsOfACylinderAreDrawnOnTheCylinder) {
   const TriMesh mesh = chords(3, kPi / 3);
   const CurvedSurface curved = curved_surface(mesh, normals_of(mesh, from_axis), fine());
   EXPECT_GT(curved.mesh.triangle_count(), 100);
@@ -77,7 +77,7 @@ TEST(CurvedTriangles, ChordsOfACylinderAreDrawnOnTheCylinder) {
 
 // The cubic of Vlachos et al. misses the arc by 3/4 (20 deg)^2 of the sagitta to first order: the
 // factor f is what brings it there.
-TEST(CurvedTriangles, TheMiddleOfAnArcIsExactUpToAHundredDegrees) {
+TEST(CurvedSurface, TheMiddleOfAnArcIsExactUpToAHundredDegrees) {
   for (const double degrees : {1.0, 20.0, 60.0, 90.0}) {
     const TriMesh mesh = chords(1, degrees / 2 * kPi / 180);
     const CurvedSurface curved = curved_surface(mesh, normals_of(mesh, from_axis), fine());
@@ -85,7 +85,7 @@ TEST(CurvedTriangles, TheMiddleOfAnArcIsExactUpToAHundredDegrees) {
   }
 }
 
-TEST(CurvedTriangles, APlaneStaysThePlaneAndIsNotDivided) {
+TEST(CurvedSurface, APlaneStaysThePlaneAndIsNotDivided) {
   const TriMesh mesh = shapes::square(4);
   const CurvedSurface curved = curved_surface(
       mesh, normals_of(mesh, [](const Vector3d&) { return Vector3d(0, 0, 1); }), fine());
@@ -95,7 +95,7 @@ TEST(CurvedTriangles, APlaneStaysThePlaneAndIsNotDivided) {
 }
 
 // Two planes that meet at an angle of 45 degrees, each with its own normal.
-TEST(CurvedTriangles, AFoldWithTwoNormalsStaysSharpAndStraight) {
+TEST(CurvedSurface, AFoldWithTwoNormalsStaysSharpAndStraight) {
   TriMesh mesh = chords(2, kPi / 4);
   EdgeNormals normals = EdgeNormals::zero(4);
   const Eigen::MatrixX3d planes = triangle_normals(mesh);
@@ -107,7 +107,7 @@ TEST(CurvedTriangles, AFoldWithTwoNormalsStaysSharpAndStraight) {
 }
 
 /// A fan about the apex of a cone with lines of slope 1: the normal of a line is that of its end.
-TEST(CurvedTriangles, LinesOfAConeAreStraightFromTheApex) {
+TEST(CurvedSurface, LinesOfAConeAreStraightFromTheApex) {
   constexpr int kLines = 8;
   TriMesh mesh;
   mesh.V.setZero(kLines + 1, 3);
@@ -154,7 +154,7 @@ struct Rough {
 
 // Borders of the drawn surface, once points at the same place are one, are those of the mesh: no
 // edge of one triangle lies beside two halves of its neighbour.
-TEST(CurvedTriangles, HasNoCracksWhereTrianglesAreDividedUnlikeTheirNeighbours) {
+TEST(CurvedSurface, HasNoCracksWhereTrianglesAreDividedUnlikeTheirNeighbours) {
   const Rough rough;
   for (const double turn : {5.0, 20.0, 45.0}) {
     CurvedSampling sampling = fine();
@@ -177,7 +177,7 @@ TEST(CurvedTriangles, HasNoCracksWhereTrianglesAreDividedUnlikeTheirNeighbours) 
   }
 }
 
-TEST(CurvedTriangles, StaysWithinTheBoundWhichItWouldLeave) {
+TEST(CurvedSurface, StaysWithinTheBoundWhichItWouldLeave) {
   const TriMesh mesh = chords(3, kPi / 3);
   CurvedSampling sampling = fine();
   sampling.farthest = 0.01;
@@ -192,7 +192,7 @@ TEST(CurvedTriangles, StaysWithinTheBoundWhichItWouldLeave) {
   EXPECT_LT(farthest_from_cylinder(curved_surface(mesh, normals, sampling).mesh), sagitta / 1900);
 }
 
-TEST(CurvedTriangles, RefusesNormalsOfAnotherMesh) {
+TEST(CurvedSurface, RefusesNormalsOfAnotherMesh) {
   EXPECT_THROW(curved_surface(chords(3, 1), EdgeNormals::zero(5), fine()), Error);
 }
 
