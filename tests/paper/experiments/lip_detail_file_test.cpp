@@ -71,7 +71,7 @@ double band_cells(const Frame& frame) {
 TEST_F(LipDetailInAFile, IsWhatTheUserAsksFor) {
   const std::map<std::string, std::string> methods{
       {"dense", "triangles = 60, "},
-      {"adaptive", "size_min = 0.05, refine_angle = 1, settle = { steps = 0 }, "},
+      {"adaptive", "size_min = 0.05, size_max = 0.2, refine_angle = 1, settle = { steps = 0 }, "},
       {"hybrid", "flat_size = 0.05, "}};
   for (const auto& [method, options] : methods) {
     const auto frames = last_frames(method, options,
