@@ -451,6 +451,55 @@ TEST(AdaptiveSheet, SettlesAfterItsMeshHasChanged) {
   EXPECT_GT(worst_strain(run_adaptive(sheet, as_it_is)), 6e-4) << "what settling takes away";
 }
 
+/// The right edge is pushed towards the left one, which is held, at once.
+Sheet pushed_sheet() {
+  Sheet sheet = sheet_of(rectangle_pattern(0.21, 0.148));
+  sheet.gravity.setZero();
+  for (const double side : {-1.0, 1.0}) {
+    Handle edge;
+    edge.segment = {Eigen::Vector2d(side * 0.105, -0.074), Eigen::Vector2d(side * 0.105, 0.074)};
+    Keyframe end;
+    end.time = 0.4;
+    end.shift = {-0.03 * std::max(side, 0.0), 0, 0};
+    edge.motion = Trajectory{{Keyframe{}, end}};
+    sheet.handles.push_back(edge);
+  }
+  sheet.duration = 0.2;
+  return sheet;
+}
+
+/// Largest sum of forces of one of two hands, in any frame (N).
+double largest_force(const Recording& recording) {
+  double largest = 0;
+  for (const Frame& frame : recording.frames) {
+    const Part& hands = frame.require_part("handles");
+    const Eigen::MatrixXd& handle = hands.arrays[0].values;
+    const Eigen::MatrixXd& force = hands.arrays[1].values;
+    for (const int which : {0, 1}) {
+      Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+      for (Eigen::Index i = 0; i < handle.rows(); ++i) {
+        if (handle(i, 0) == which) sum += force.row(i);
+      }
+      largest = std::max(largest, sum.norm());
+    }
+  }
+  return largest;
+}
+
+TEST(AdaptiveSheet, PullsAtHandsLikeTheDenseSheetWhenTheyBeginToMove) {
+  const Sheet sheet = pushed_sheet();
+  DenseOptions dense;
+  dense.triangles = 600;
+  Recording reference;
+  RunContext context(1);
+  make_dense_sheet(sheet, dense)->run(reference, context, {});
+  const double expected = largest_force(reference);
+  EXPECT_LT(largest_force(run_adaptive(sheet)), 2 * expected);
+  AdaptiveOptions long_edges;
+  long_edges.size_max = 0.2;
+  EXPECT_GT(largest_force(run_adaptive(sheet, long_edges)), 2 * expected);
+}
+
 TEST(AdaptiveSheet, ComesToRestOnABall) {
   Sheet sheet = sheet_of(rectangle_pattern(0.21, 0.21));
   Obstacle ball;
