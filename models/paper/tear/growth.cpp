@@ -43,6 +43,8 @@ constexpr int kMostSteps = 10;
 /// Most time steps that are not looked at after others in vain: of a sheet that swings most were,
 /// and rested for nothing. A hand goes a fraction of a millimetre in them.
 constexpr int kMostWait = 3;
+/// For no longer than this (s): three steps of 5 ms. With longer ones a pull could come and go.
+constexpr double kLongestWait = 0.0155;
 /// Of the implicit steps from rest that a sheet relaxes in (s).
 constexpr double kRelaxTime = 1e-3;
 /// Of them, after a tear has grown; and most of them, while the sheet has more energy than before.
@@ -352,10 +354,11 @@ void TearGrowth::take_step(const Growing& growing, const Follower& follower, She
 int TearGrowth::grow(const Candidates& candidates, const Follower& follower, ShellStepper& stepper,
                      ShellState& state) {
   if (!sheet_.toughness.tears()) return 0;
-  if (wait_ > 0) {
+  if (wait_ > 0 && state.time - looked_ < kLongestWait) {
     --wait_;
     return 0;
   }
+  looked_ = state.time;
   for (int steps = 0; steps < kMostSteps; ++steps) {
     const Eigen::MatrixX3i& now = state.mesh.triangles;
     if (!neighbours_ || !same_triangles(neighbours_->triangles, now)) {
@@ -397,6 +400,7 @@ void TearGrowth::save(StateWriter& out) const {
   out.number(last_pull_);
   out.number(in_vain_);
   out.number(wait_);
+  out.number(looked_);
 }
 
 void TearGrowth::load(StateReader& in) {
@@ -410,6 +414,7 @@ void TearGrowth::load(StateReader& in) {
   last_pull_ = in.number<LastPull>();
   in_vain_ = in.number<int>();
   wait_ = in.number<int>();
+  looked_ = in.number<double>();
 }
 
 }  // namespace geoprior::paper

@@ -37,7 +37,7 @@ bool is_on_entered_hole(const Sheet& sheet, const Tears& tears, const Eigen::Vec
 /// 3.2.2): E_r of `TipPull::released` against E_f = K T, of the sheet at rest: a pull that goes,
 /// or does not settle, when the sheet relaxes tears nothing. After each step of a tear the sheet is
 /// meshed anew and relaxes. While a sheet swings, its pulls come and go: after one, two, three time
-/// steps in a row in vain, as many are not looked at.
+/// steps in a row in vain, as many are not looked at, for 15 ms at most.
 class TearGrowth {
  public:
   TearGrowth(const Sheet& sheet, const TearOptions& options);
@@ -112,8 +112,9 @@ class TearGrowth {
   std::vector<Eigen::Vector2d> given_up_;     ///< places where no tear can start or go on
   Totals totals_;
   LastPull last_pull_;
-  int in_vain_ = 0;  ///< time steps in a row whose pulls were gone once the sheet was at rest
-  int wait_ = 0;     ///< time steps until candidates are looked at again
+  int in_vain_ = 0;    ///< time steps in a row whose pulls were gone once the sheet was at rest
+  int wait_ = 0;       ///< time steps until candidates are looked at again
+  double looked_ = 0;  ///< when they were last (s)
 };
 
 }  // namespace geoprior::paper

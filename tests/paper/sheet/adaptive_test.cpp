@@ -101,6 +101,7 @@ TEST(Sizing, OfACylinderIsRefineAngleTimesRadius) {
   const Sheet sheet = sheet_of(rectangle_pattern(0.3, 0.3));
   SizingOptions options;
   options.size_min = 1e-4;
+  options.size_max = 0.2;
   options.aspect_min = 0.01;
   options.refine_angle = 0.4;
   options.refine_compression = 1;  // chords of the cylinder are shorter than their arcs
@@ -281,6 +282,7 @@ TEST(Remesh, MakesLongTrianglesAlongACylinder) {
     const Sheet sheet = sheet_of(rectangle_pattern(0.4, 0.4));
     SizingOptions options;
     options.size_min = 1e-3;
+    options.size_max = 0.2;
     options.refine_angle = 0.3;
     options.refine_compression = 1;  // chords of the cylinder are shorter than their arcs
     const double radius = 0.08, size = options.refine_angle * radius;
