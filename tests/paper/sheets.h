@@ -32,6 +32,24 @@ inline Handle point_handle(const std::string& name, std::vector<Eigen::Vector2d>
   return handle;
 }
 
+/// Two hands that pull a small sheet with a cut apart, 4 cm of tear in 0.8 s.
+inline Sheet pulled_sheet() {
+  Sheet sheet = free_sheet(0.12, 0.16);
+  sheet.pattern.cuts = {{{0, -0.08}, {0, -0.04}}};
+  sheet.imperfection = 1e-5;
+  sheet.toughness.energy = 1e4;
+  sheet.duration = 0.8;
+  for (const double side : {-1.0, 1.0}) {
+    Keyframe start, end;
+    end.time = 0.8;
+    end.shift = Eigen::Vector3d(side * 0.04, 0, 0);
+    sheet.handles.push_back(
+        point_handle(side < 0 ? "left" : "right", {{side * 0.05, -0.08}}, {start, end}));
+    sheet.handles.back().stiffness = 500;
+  }
+  return sheet;
+}
+
 inline ShellState at_rest(const Sheet& sheet, int triangles,
                           UniformLayout layout = UniformLayout::structured) {
   return resting_state(

@@ -57,7 +57,7 @@ Vector3d normal_towards(const Corner& corner, const Vector3d& end) {
 class Sampler {
  public:
   Sampler(const TriMesh& mesh, const EdgeNormals& normals, const CurvedSampling& sampling)
-      : sampling_(sampling) {
+      : sampling_(sampling), least_cosine_(std::cos(sampling.angle / 2)) {
     for (const auto& row : mesh.V.rowwise()) place_.emplace_back(row);
     flat_ = place_;
     for (int t = 0; t < mesh.triangle_count(); ++t) {
@@ -73,6 +73,8 @@ class Sampler {
   /// Halves the edges that are bent too much. @return  whether there were any
   bool refine() {
     const EdgeConnectivity edges(vertices());
+    place_.reserve(2 * place_.size());
+    flat_.reserve(2 * flat_.size());
     middles_.assign(edges.half_edge_count(), {});
     middle_vertex_.assign(edges.edge_count(), -1);
     bool any = false;
@@ -82,6 +84,8 @@ class Sampler {
     std::vector<int> parents;
     before.swap(triangles_);
     parents.swap(parent_);
+    triangles_.reserve(2 * before.size());
+    parent_.reserve(2 * before.size());
     for (std::size_t t = 0; t < before.size(); ++t) {
       parent_now_ = parents[t];
       divide(before[t], static_cast<int>(t), edges);
@@ -94,6 +98,7 @@ class Sampler {
  private:
   [[nodiscard]] std::vector<std::array<int, 3>> vertices() const {
     std::vector<std::array<int, 3>> out;
+    out.reserve(triangles_.size());
     for (const Triangle& t : triangles_) out.push_back({t[0].vertex, t[1].vertex, t[2].vertex});
     return out;
   }
@@ -101,6 +106,7 @@ class Sampler {
   /// Decides from the edge alone, whichever triangle it is looked at from.
   bool halve(const EdgeConnectivity& edges, int e) {
     const auto [a, b] = edges.edge(e);
+    if ((place_[b] - place_[a]).norm() <= sampling_.shortest) return false;
     Vector3d rise = Vector3d::Zero();
     double cosine = 1;
     const auto half_edges = edges.half_edges(e);
@@ -113,8 +119,7 @@ class Sampler {
       cosine = std::min(
           {cosine, from.next.dot(middles_[h].normal), to.previous.dot(middles_[h].normal)});
     }
-    if ((place_[b] - place_[a]).norm() <= sampling_.shortest) return false;
-    if (rise.norm() <= sampling_.tolerance && cosine >= std::cos(sampling_.angle / 2)) return false;
+    if (rise.norm() <= sampling_.tolerance && cosine >= least_cosine_) return false;
     middle_vertex_[e] = static_cast<int>(place_.size());
     place_.emplace_back((place_[a] + place_[b]) / 2 + rise);
     flat_.emplace_back((flat_[a] + flat_[b]) / 2);
@@ -192,12 +197,13 @@ class Sampler {
   }
 
   CurvedSampling sampling_;
+  double least_cosine_;  ///< of half the turn that an edge may have
   std::vector<Vector3d> place_;
   std::vector<Vector3d> flat_;  ///< of the same points: where they lie on the flat triangles
   std::vector<Triangle> triangles_;
   std::vector<int> parent_;
   // Of one refinement.
-  std::vector<Middle> middles_;     ///< of each half-edge
+  std::vector<Middle> middles_;     ///< of each half-edge of an edge that may be halved
   std::vector<int> middle_vertex_;  ///< of each edge; -1: it is not halved
   int parent_now_ = -1;
 };

@@ -12,6 +12,7 @@
 #include "core/angles.h"
 #include "core/connectivity.h"
 #include "core/disjoint_sets.h"
+#include "core/geometry/planar.h"
 
 namespace geoprior::paper {
 namespace {
@@ -20,10 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kFlat = 0;  ///< of the array "kind"
-
-double doubled_area(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
-}
 
 bool is_along(const Vector3d& normal, const Vector3d& mean) {
   return normal.dot(mean) > std::cos(DrawnSurface::kUneven * kDegree);
@@ -104,7 +101,7 @@ class SheetEdges {
       const Eigen::RowVector3d s = plastic_.row(h / 3);
       const double curvature =
           s[0] * n.x() * n.x() + 2 * s[1] * n.x() * n.y() + s[2] * n.y() * n.y();
-      fold += curvature * std::abs(doubled_area(a, b, c)) / length / 3;
+      fold += curvature * std::abs(cross(b - a, c - a)) / length / 3;
     }
     return std::abs(fold);
   }
@@ -329,7 +326,8 @@ CurvedSampling paper_sampling(const Part& surface) {
       surface.require_array("pattern", NamedArray::On::points, 2).values;
   double area = 0;
   for (const auto& t : surface.triangles.rowwise()) {
-    area += doubled_area(pattern.row(t[0]), pattern.row(t[1]), pattern.row(t[2])) / 2;
+    const Vector2d a = pattern.row(t[0]), b = pattern.row(t[1]), c = pattern.row(t[2]);
+    area += cross(b - a, c - a) / 2;
   }
   return {.tolerance = DrawnSurface::kTolerance,
           .angle = DrawnSurface::kTurn * kDegree,

@@ -78,21 +78,23 @@ void add_vertices(const ShellMesh& mesh, const Tears& tears, std::vector<TearCan
   for (TearCandidate& place : places) place.on_flaw = true;
 }
 
-constexpr int kNone = std::numeric_limits<int>::min();
-
-/// Tears that have run into a hole, less those that leave it; kNone: no tear ends at it.
-int tears_into(const std::vector<Vector2d>& loop, const Tears& tears) {
-  const double same = kSame * width(tears.torn());
+bool is_on(const std::vector<Vector2d>& loop, const Vector2d& p, const Tears& tears) {
   Pattern hole;
   hole.border = loop;
-  const auto on = [&](const Vector2d& p) { return nearest_on_loops(hole, p).distance <= same; };
+  return nearest_on_loops(hole, p).distance <= kSame * width(tears.torn());
+}
+
+/// Tears that have run into a hole, less those that leave it; absent: no tear ends at it.
+std::optional<int> tears_into(const std::vector<Vector2d>& loop, const Tears& tears) {
+  const auto on = [&](const Vector2d& p) { return is_on(loop, p, tears); };
   int ended = 0, left = 0;
   for (const Tear& tear : tears.all()) {
     if (tear.path.size() < 2) continue;
     if (tear.ended && on(tear.tip())) ++ended;
     if (on(tear.path.front())) ++left;
   }
-  return ended == 0 ? kNone : ended - left;
+  if (ended == 0) return std::nullopt;
+  return ended - left;
 }
 
 }  // namespace
@@ -104,13 +106,13 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
   }
   for (std::size_t k = 0; k < sheet.pattern.loop_count(); ++k) {
     const std::vector<Vector2d>& loop = sheet.pattern.loop(k);
-    const int open = k == 0 ? 0 : tears_into(loop, tears);
-    if (open > 0) {
+    const auto open = k == 0 ? std::nullopt : tears_into(loop, tears);
+    if (open && *open > 0) {
       TearCandidate candidate{loop[0], std::nullopt};
       candidate.hole = static_cast<int>(k);
       candidates.push_back(candidate);
     }
-    if (k > 0 && open != kNone) continue;
+    if (open) continue;
     const std::size_t n = loop.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vector2d in = loop[i] - loop[(i + n - 1) % n], out = loop[(i + 1) % n] - loop[i];
@@ -125,11 +127,8 @@ std::vector<TearCandidate> plain_candidates(const Sheet& sheet, const Tears& tea
 }
 
 bool is_on_entered_hole(const Sheet& sheet, const Tears& tears, const Vector2d& p) {
-  const double same = kSame * width(tears.torn());
   return std::ranges::any_of(sheet.pattern.holes, [&](const std::vector<Vector2d>& loop) {
-    Pattern hole;
-    hole.border = loop;
-    return nearest_on_loops(hole, p).distance <= same && tears_into(loop, tears) != kNone;
+    return is_on(loop, p, tears) && tears_into(loop, tears);
   });
 }
 

@@ -425,8 +425,9 @@ void HybridMesher::keep(const Sheet& sheet, int effort, ShellState& state, RunCo
   if (options_.projection) project(sheet, effort, state, context);
 }
 
-/// Makes the mesh finer where the sheet strains whatever its rulings are. False, and everything as
-/// it was, where it is as fine as it may be or strains no less then.
+/// Makes the mesh finer where the sheet strains whatever its rulings are. What strain the new mesh
+/// has at first is not asked: the next steps bend it at its new edges. False, and everything as it
+/// was, where it is as fine as it may be.
 bool HybridMesher::refine(const Sheet& sheet, const Snapshot& before, ShellState& state,
                           RunContext& context) {
   if (options_.refinements == 0) return false;

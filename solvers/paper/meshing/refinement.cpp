@@ -1,15 +1,15 @@
 #include "solvers/paper/meshing/refinement.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "core/geometry/planar.h"
 #include "models/paper/shell/shape_gradients.h"
+#include "solvers/paper/shell/green_strain.h"
 
 namespace geoprior::paper {
 namespace {
 
-using Eigen::Matrix2d, Eigen::Vector2d;
+using Eigen::Vector2d;
 
 /// Edges of a place that is there, over those asked for, up to which it serves.
 constexpr double kAsFine = 1.2;
@@ -21,11 +21,7 @@ double strain_of(const ShellState& state, int t, double area) {
   for (int k = 0; k < 3; ++k) {
     F += state.x.row(state.mesh.triangles(t, k)).transpose() * gradient[k].transpose();
   }
-  const Matrix2d G = (F.transpose() * F - Matrix2d::Identity()) / 2;
-  return Eigen::SelfAdjointEigenSolver<Matrix2d>(G, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .cwiseAbs()
-      .maxCoeff();
+  return largest_principal(green_strain(F));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/numerics/sparse_ldlt.h"
+#include "solvers/paper/shell/green_strain.h"
 
 namespace geoprior::paper {
 namespace {
@@ -40,15 +41,6 @@ Eigen::Matrix<double, 3, 2> gradient_of_map(const Triangle& t, const Eigen::Matr
     F += x.row(t.vertices[k]).transpose() * t.shape.row(k);
   }
   return F;
-}
-
-Matrix2d green_strain(const Eigen::Matrix<double, 3, 2>& F) {
-  return (F.transpose() * F - Matrix2d::Identity()) / 2;
-}
-
-double largest_principal(const Matrix2d& G) {
-  const double mean = (G(0, 0) + G(1, 1)) / 2;
-  return std::abs(mean) + std::hypot((G(0, 0) - G(1, 1)) / 2, G(0, 1));
 }
 
 /// The part of a symmetric matrix with eigenvalues > 0.

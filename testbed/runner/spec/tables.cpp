@@ -212,7 +212,8 @@ void describe(OptionVisitor& v, FigureViewTable& table) {
                   {.doc = "material of what has no colour; paper: white, the back side darker"});
   v.value("edges", t.edges, {.doc = "edges of the triangles as thin lines"});
   v.value("plain", t.plain,
-          {.doc = "adds the same panels plain and flat under lights that graze: under each row, "
+          {.doc = "adds the same panels plain, flat unless the part has normals, under lights that "
+                  "graze: under each row, "
                   "beside it where it has one column"});
   v.value("plain_part", t.plain_part,
           {.doc = "part that the plain panels show where the frames have it; absent: `part`"});

@@ -79,20 +79,8 @@ TEST(HoopTension, IsGreatestAcrossThePullOnAnyPolygon) {
 
 /// Two hands pull a sheet with a hole apart; the tear runs into it from below.
 Sheet holed_sheet(int corners, double turn_deg) {
-  Sheet sheet = sheets::free_sheet(0.12, 0.16);
-  sheet.pattern.cuts = {{{0, -0.08}, {0, -0.04}}};
+  Sheet sheet = sheets::pulled_sheet();
   sheet.pattern.holes = {round_hole({0, -0.02}, 8e-3, corners, turn_deg)};
-  sheet.imperfection = 1e-5;
-  sheet.toughness.energy = 1e4;
-  sheet.duration = 0.8;
-  for (const double side : {-1.0, 1.0}) {
-    Keyframe start, end;
-    end.time = 0.8;
-    end.shift = Eigen::Vector3d(side * 0.04, 0, 0);
-    sheet.handles.push_back(
-        sheets::point_handle(side < 0 ? "left" : "right", {{side * 0.05, -0.08}}, {start, end}));
-    sheet.handles.back().stiffness = 500;
-  }
   return sheet;
 }
 

@@ -290,24 +290,6 @@ TEST(TearGrowth, RefusesAStepLostInRounding) {
               testing::ThrowsMessage<Error>(testing::HasSubstr("rounding")));
 }
 
-/// Two hands that pull a small sheet with a cut apart, 4 cm of tear in 0.8 s.
-Sheet pulled_sheet() {
-  Sheet sheet = sheets::free_sheet(0.12, 0.16);
-  sheet.pattern.cuts = {{{0, -0.08}, {0, -0.04}}};
-  sheet.imperfection = 1e-5;
-  sheet.toughness.energy = 1e4;
-  sheet.duration = 0.8;
-  for (const double side : {-1.0, 1.0}) {
-    Keyframe start, end;
-    end.time = 0.8;
-    end.shift = Vector3d(side * 0.04, 0, 0);
-    sheet.handles.push_back(
-        sheets::point_handle(side < 0 ? "left" : "right", {{side * 0.05, -0.08}}, {start, end}));
-    sheet.handles.back().stiffness = 500;
-  }
-  return sheet;
-}
-
 DenseOptions few_triangles() {
   DenseOptions options;
   options.triangles = 400;
@@ -329,7 +311,7 @@ class TearsOf : public testing::TestWithParam<const char*> {
     return at->second;
   }
   static std::unique_ptr<Process> make(const std::string& mesh) {
-    static const Sheet sheet = pulled_sheet();
+    static const Sheet sheet = sheets::pulled_sheet();
     if (mesh == "dense") return make_dense_sheet(sheet, few_triangles());
     if (mesh == "adaptive") return make_adaptive_sheet(sheet, {});
     return make_hybrid_sheet(sheet, {});
@@ -372,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, TearsOf, testing::Values("dense", "adaptive", "
                          [](const auto& of) { return std::string(of.param); });
 
 TEST(TearGrowth, WithoutPullNothingTears) {
-  Sheet sheet = pulled_sheet();
+  Sheet sheet = sheets::pulled_sheet();
   for (Handle& handle : sheet.handles) handle.motion->keys.resize(1);
   Recording recording;
   RunContext context(1);
@@ -381,7 +363,7 @@ TEST(TearGrowth, WithoutPullNothingTears) {
 }
 
 TEST(TearGrowth, ASheetTornThroughFallsIntoTwoParts) {
-  Sheet sheet = pulled_sheet();
+  Sheet sheet = sheets::pulled_sheet();
   sheet.pattern.cuts = {{{0, -0.08}, {0, 0.06}}};
   sheet.duration = 1.6;
   sheet.handle_step = 1e-3;
@@ -415,7 +397,7 @@ TEST(TearGrowth, ASheetTornThroughFallsIntoTwoParts) {
 
 /// Thesis 3.2.2: the fingers' places are candidates.
 TEST(TearGrowth, AFingerTearsTheSheetThatItPulls) {
-  Sheet sheet = pulled_sheet();
+  Sheet sheet = sheets::pulled_sheet();
   sheet.pattern.cuts.clear();
   sheet.toughness.energy = 100;
   Keyframe start, end;
@@ -437,7 +419,7 @@ TEST(TearGrowth, AFingerTearsTheSheetThatItPulls) {
 
 /// The same sheet whole, its border between the hands smooth.
 TEST(TearGrowth, TheGeneralSearchTearsASmoothBorder) {
-  Sheet sheet = pulled_sheet();
+  Sheet sheet = sheets::pulled_sheet();
   sheet.pattern.cuts.clear();
   sheet.toughness.energy = 500;
   sheet.handle_step = 1e-3;
