@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -265,6 +266,8 @@ struct Topic {
   std::vector<DiagnosticEntry> diagnostics;
   /// What is drawn where the experiment file does not say.
   FigureView view;
+  /// Parts of frames that are only looked at: pictures and exports see them, metrics cannot.
+  std::set<std::string> looked_at = {};
   std::vector<TopicCommand> commands = {};
   std::vector<TopicFile> files = {};
 };

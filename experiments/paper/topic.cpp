@@ -5,6 +5,8 @@
 namespace geoprior::paper {
 namespace {
 
+constexpr const char* kDrawn = "drawn";  // of add_drawn_surface
+
 /// The pieces of the hybrid coloured, on white paper; what a method does not have is not drawn.
 FigureView paper_view() {
   FigureView view;
@@ -15,7 +17,7 @@ FigureView paper_view() {
   view.shading = FigureView::Shading::flat;
   view.material = FigureView::Material::paper;
   view.edges = true;
-  view.plain_part = "drawn";
+  view.plain_part = kDrawn;
   view.overlays = {"rulings", "singular_points", "handles"};
   return view;
 }
@@ -40,6 +42,7 @@ Topic make_topic() {
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view = paper_view();
+  topic.looked_at = {kDrawn};
   return topic;
 }
 

@@ -224,6 +224,7 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
   line.index = index;
   line.parameter = frame.parameter;
   line.files = recorder_.write_frame(line.place, index, frame);
+  for (const std::string& name : topic_.looked_at) frame.parts.erase(name);
   const std::optional<Frame> reference = reference_frame(variant, frame.parameter);
   {
     const LeaveAtOnce section(farewell_within_frame(variant));

@@ -249,7 +249,7 @@ ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& t
   }
   Journal journal(path_below(result.folder, "journal.jsonl"));
   RunState state = restore(experiment, journal, result.folder);
-  Recorder recorder(result.folder, journal, state);
+  Recorder recorder(result.folder, journal, state, topic_of(experiment, topics).looked_at);
   const bool is_new = !state.run();
   if (is_new) require_own_beginning(experiment, result.folder);
   try {

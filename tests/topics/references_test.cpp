@@ -29,7 +29,7 @@ constexpr std::uintmax_t kBytesOfFirst = 1'000'000, kBytesOfOther = 170'000;
 
 /// Seconds of processor time of quick runs, as counted when they were blessed.
 constexpr double kCostOfFirst = 480, kCostOfOther = 40;
-// Of paper a third is what is drawn of every frame, made and written.
+// Of paper a sixth is what is drawn of every frame, made and written.
 constexpr double kCostOfRun = 8, kCostOfLongRun = 16;
 /// Those whose claims no smaller scene has shown so far.
 const std::set<std::string> kLongRuns{

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "core/connectivity.h"
@@ -47,7 +46,13 @@ struct Corner {
   Vector3d previous;  ///< of the edge from the previous one, here
 };
 
-using Triangle = std::array<Corner, 3>;
+struct Triangle {
+  std::array<Corner, 3> corners;
+  std::array<bool, 3> settled{};  ///< whether the edge from corner k is as short as it will be
+  int parent = 0;
+
+  [[nodiscard]] bool is_settled() const { return settled[0] && settled[1] && settled[2]; }
+};
 
 /// Normal, at a corner, of a new line from it to a point of the triangle with that normal.
 Vector3d normal_towards(const Corner& corner, const Vector3d& end) {
@@ -60,34 +65,32 @@ class Sampler {
       : sampling_(sampling), least_cosine_(std::cos(sampling.angle / 2)) {
     for (const auto& row : mesh.V.rowwise()) place_.emplace_back(row);
     flat_ = place_;
+    active_.resize(mesh.triangle_count());
     for (int t = 0; t < mesh.triangle_count(); ++t) {
-      Triangle& triangle = triangles_.emplace_back();
-      parent_.push_back(t);
+      active_[t].parent = t;
       for (int k = 0; k < 3; ++k) {
-        triangle[k] = {mesh.F(t, k), normals.origin.row(3 * t + k),
-                       normals.tip.row(3 * t + (k + 2) % 3)};
+        active_[t].corners[k] = {mesh.F(t, k), normals.origin.row(3 * t + k),
+                                 normals.tip.row(3 * t + (k + 2) % 3)};
       }
     }
   }
 
-  /// Halves the edges that are bent too much. @return  whether there were any
+  /// Halves the edges that are bent too much. @return  whether there may be more
   bool refine() {
+    if (active_.empty()) return false;
     const EdgeConnectivity edges(vertices());
-    place_.reserve(2 * place_.size());
-    flat_.reserve(2 * flat_.size());
     middles_.assign(edges.half_edge_count(), {});
     middle_vertex_.assign(edges.edge_count(), -1);
-    bool any = false;
-    for (int e = 0; e < edges.edge_count(); ++e) any |= halve(edges, e);
-    if (!any) return false;
+    for (int e = 0; e < edges.edge_count(); ++e) {
+      const auto half_edges = edges.half_edges(e);
+      if (settled(half_edges[0]) || halve(edges, e)) continue;
+      for (const int h : half_edges) settled(h) = true;
+    }
     std::vector<Triangle> before;
-    std::vector<int> parents;
-    before.swap(triangles_);
-    parents.swap(parent_);
-    triangles_.reserve(2 * before.size());
-    parent_.reserve(2 * before.size());
+    before.swap(active_);
+    active_.reserve(2 * before.size());
     for (std::size_t t = 0; t < before.size(); ++t) {
-      parent_now_ = parents[t];
+      parent_now_ = before[t].parent;
       divide(before[t], static_cast<int>(t), edges);
     }
     return true;
@@ -98,22 +101,29 @@ class Sampler {
  private:
   [[nodiscard]] std::vector<std::array<int, 3>> vertices() const {
     std::vector<std::array<int, 3>> out;
-    out.reserve(triangles_.size());
-    for (const Triangle& t : triangles_) out.push_back({t[0].vertex, t[1].vertex, t[2].vertex});
+    out.reserve(active_.size());
+    for (const Triangle& t : active_) {
+      out.push_back({t.corners[0].vertex, t.corners[1].vertex, t.corners[2].vertex});
+    }
     return out;
   }
 
-  /// Decides from the edge alone, whichever triangle it is looked at from.
+  bool& settled(int half_edge) { return active_[half_edge / 3].settled[half_edge % 3]; }
+
+  /// Gives an edge its middle, if it is bent. Decides from the edge alone: all its triangles have
+  /// the middle, or none.
   bool halve(const EdgeConnectivity& edges, int e) {
     const auto [a, b] = edges.edge(e);
-    if ((place_[b] - place_[a]).norm() <= sampling_.shortest) return false;
+    if ((place_[b] - place_[a]).squaredNorm() <= sampling_.shortest * sampling_.shortest) {
+      return false;
+    }
     Vector3d rise = Vector3d::Zero();
     double cosine = 1;
     const auto half_edges = edges.half_edges(e);
     for (const int h : half_edges) {
-      const Triangle& t = triangles_[h / 3];
-      const Corner& from = t[h % 3];
-      const Corner& to = t[(h + 1) % 3];
+      const auto& corners = active_[h / 3].corners;
+      const Corner& from = corners[h % 3];
+      const Corner& to = corners[(h + 1) % 3];
       middles_[h] = middle_of({place_[from.vertex], place_[to.vertex], from.next, to.previous});
       rise += middles_[h].rise / static_cast<double>(half_edges.size());
       cosine = std::min(
@@ -126,22 +136,21 @@ class Sampler {
     return true;
   }
 
-  /// A triangle whose edges from corner k are: that to `b` and that from `c`.
-  void add(const Triangle& triangle) {
-    triangles_.push_back(triangle);
-    parent_.push_back(parent_now_);
+  /// A triangle of three corners; settled edges are those of the one that is divided.
+  void add(const std::array<Corner, 3>& corners, const std::array<bool, 3>& settled) {
+    const Triangle triangle{corners, settled, parent_now_};
+    (triangle.is_settled() ? done_ : active_).push_back(triangle);
   }
 
-  /// The middles of the edges of a triangle, numbered as its corners.
   void divide(const Triangle& t, int number, const EdgeConnectivity& edges) {
-    std::array<int, 3> split{};
+    std::array<int, 3> split{};  // middles of the edges, numbered as the corners
     int count = 0;
     for (int k = 0; k < 3; ++k) {
       split[k] = middle_vertex_[edges.edge_of(3 * number + k)];
       count += split[k] < 0 ? 0 : 1;
     }
     const Middle* m = middles_.data() + 3L * number;
-    if (count == 0) return add(t);
+    if (count == 0) return add(t.corners, t.settled);
     if (count == 3) return quarter(t, split, m);
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
@@ -152,60 +161,85 @@ class Sampler {
     }
   }
 
-  /// Edge k has a middle: lines from it to the corner opposite.
+  /// Edge k has a middle: a line from it to the corner opposite.
   void halve_triangle(const Triangle& t, int k, int middle, const Vector3d& normal) {
-    const Corner &a = t[k], &b = t[(k + 1) % 3], &c = t[(k + 2) % 3];
+    const Corner &a = t.corners[k], &b = t.corners[(k + 1) % 3], &c = t.corners[(k + 2) % 3];
     const Vector3d n = normal_towards(c, normal);
-    add({Corner{a.vertex, a.next, a.previous}, Corner{middle, normal, normal},
-         Corner{c.vertex, c.next, n}});
-    add({Corner{middle, normal, normal}, Corner{b.vertex, b.next, b.previous},
-         Corner{c.vertex, n, c.previous}});
+    const Corner m{middle, normal, normal};
+    add({a, m, Corner{c.vertex, c.next, n}}, {false, false, t.settled[(k + 2) % 3]});
+    add({m, b, Corner{c.vertex, n, c.previous}}, {false, t.settled[(k + 1) % 3], false});
   }
 
   /// Edge k and the next one have middles: the corner between them is cut off, the rest divided
   /// along its shorter diagonal.
   void cut_corner(const Triangle& t, int k, const std::array<int, 2>& middle,
                   const std::array<Vector3d, 2>& normal) {
-    const Corner &a = t[k], &b = t[(k + 1) % 3], &c = t[(k + 2) % 3];
+    const Corner &a = t.corners[k], &b = t.corners[(k + 1) % 3], &c = t.corners[(k + 2) % 3];
     const Corner m{middle[0], normal[0], normal[0]}, n{middle[1], normal[1], normal[1]};
-    add({m, b, n});
+    const bool is_settled = t.settled[(k + 2) % 3];  // from c to a
+    add({m, b, n}, {});
     const double from_a = (place_[a.vertex] - place_[n.vertex]).squaredNorm();
     const double from_c = (place_[c.vertex] - place_[m.vertex]).squaredNorm();
     if (from_a <= from_c) {
       const Vector3d at_a = normal_towards(a, n.next);
-      add({Corner{a.vertex, a.next, at_a}, m, n});
-      add({Corner{a.vertex, at_a, a.previous}, n, c});
+      add({Corner{a.vertex, a.next, at_a}, m, n}, {});
+      add({Corner{a.vertex, at_a, a.previous}, n, c}, {false, false, is_settled});
     } else {
       const Vector3d at_c = normal_towards(c, m.next);
-      add({a, m, Corner{c.vertex, c.next, at_c}});
-      add({m, n, Corner{c.vertex, at_c, c.previous}});
+      add({a, m, Corner{c.vertex, c.next, at_c}}, {false, false, is_settled});
+      add({m, n, Corner{c.vertex, at_c, c.previous}}, {});
     }
   }
 
   void quarter(const Triangle& t, const std::array<int, 3>& split, const Middle* middle) {
-    Triangle inner;
+    std::array<Corner, 3> inner;
     for (int k = 0; k < 3; ++k) inner[k] = {split[k], middle[k].normal, middle[k].normal};
-    for (int k = 0; k < 3; ++k) add({t[k], inner[k], inner[(k + 2) % 3]});
-    add(inner);
+    for (int k = 0; k < 3; ++k) add({t.corners[k], inner[k], inner[(k + 2) % 3]}, {});
+    add(inner, {});
   }
 
   /// A displacement from the flat triangle, kept within the bound.
   [[nodiscard]] Vector3d bounded(const Vector3d& u) const {
     if (!sampling_.farthest) return u;
-    const double ratio = u.norm() / *sampling_.farthest;
-    return u / std::pow(1 + std::pow(ratio, 8), 1.0 / 8);
+    const double square = u.squaredNorm() / (*sampling_.farthest * *sampling_.farthest);
+    return u / std::sqrt(std::sqrt(std::sqrt(1 + square * square * square * square)));
   }
 
   CurvedSampling sampling_;
   double least_cosine_;  ///< of half the turn that an edge may have
   std::vector<Vector3d> place_;
-  std::vector<Vector3d> flat_;  ///< of the same points: where they lie on the flat triangles
-  std::vector<Triangle> triangles_;
-  std::vector<int> parent_;
+  std::vector<Vector3d> flat_;    ///< of the same points: where they lie on the flat triangles
+  std::vector<Triangle> active_;  ///< those with edges that may have to be halved
+  std::vector<Triangle> done_;
   // Of one refinement.
   std::vector<Middle> middles_;     ///< of each half-edge of an edge that may be halved
   std::vector<int> middle_vertex_;  ///< of each edge; -1: it is not halved
   int parent_now_ = -1;
+};
+
+/// Vertices, once for every normal that they have.
+class SplitVertices {
+ public:
+  struct Point {
+    int vertex;
+    Vector3d normal;
+    int earlier;  ///< the point of the same vertex before; -1: none
+  };
+
+  explicit SplitVertices(std::size_t vertices) : last_(vertices, -1) {}
+
+  int find(int vertex, const Vector3d& normal) {
+    for (int i = last_[vertex]; i >= 0; i = points_[i].earlier) {
+      if (points_[i].normal == normal) return i;
+    }
+    points_.push_back({vertex, normal, last_[vertex]});
+    return last_[vertex] = static_cast<int>(points_.size()) - 1;
+  }
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+
+ private:
+  std::vector<Point> points_;
+  std::vector<int> last_;  ///< of each vertex; -1: none
 };
 
 CurvedSurface Sampler::surface() const {
@@ -216,30 +250,27 @@ CurvedSurface Sampler::surface() const {
     out.distance = std::max(out.distance, u.norm());
     places[v] = flat_[v] + u;
   }
-  using Key = std::array<double, 4>;  // vertex and normal
-  std::map<Key, int> index;
-  std::vector<Key> points;
-  out.mesh.F.resize(triangles_.size(), 3);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const Corner& corner = triangles_[t][k];
-      const Vector3d sum = corner.next + corner.previous;
-      const Vector3d n = corner.next == corner.previous || sum.squaredNorm() == 0
-                             ? corner.next
-                             : Vector3d(sum.normalized());
-      const Key key{static_cast<double>(corner.vertex), n.x(), n.y(), n.z()};
-      const auto [at, is_new] = index.emplace(key, static_cast<int>(points.size()));
-      if (is_new) points.push_back(key);
-      out.mesh.F(static_cast<Eigen::Index>(t), k) = at->second;
+  SplitVertices vertices(places.size());
+  out.mesh.F.resize(done_.size() + active_.size(), 3);
+  for (const std::vector<Triangle>* triangles : {&done_, &active_}) {
+    for (const Triangle& t : *triangles) {
+      const auto row = std::ssize(out.parent);
+      for (int k = 0; k < 3; ++k) {
+        const Corner& corner = t.corners[k];
+        const Vector3d sum = corner.next + corner.previous;
+        const bool is_even = corner.next == corner.previous || sum.squaredNorm() == 0;
+        out.mesh.F(row, k) =
+            vertices.find(corner.vertex, is_even ? corner.next : Vector3d(sum.normalized()));
+      }
+      out.parent.push_back(t.parent);
     }
   }
-  out.mesh.V.resize(points.size(), 3);
-  out.normals.resize(points.size(), 3);
-  for (int i = 0; i < std::ssize(points); ++i) {
-    out.mesh.V.row(i) = places[static_cast<std::size_t>(points[i][0])];
-    out.normals.row(i) << points[i][1], points[i][2], points[i][3];
+  out.mesh.V.resize(vertices.points().size(), 3);
+  out.normals.resize(vertices.points().size(), 3);
+  for (int i = 0; i < std::ssize(vertices.points()); ++i) {
+    out.mesh.V.row(i) = places[vertices.points()[i].vertex];
+    out.normals.row(i) = vertices.points()[i].normal;
   }
-  out.parent = parent_;
   return out;
 }
 

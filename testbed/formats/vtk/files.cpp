@@ -38,6 +38,9 @@
 namespace geoprior {
 namespace {
 
+/// Of zlib: a third of the time of VTK's own choice, for files a twentieth larger.
+constexpr int kCompressionLevel = 1;
+
 vtkSmartPointer<vtkDoubleArray> to_vtk(const NamedArray& array) {
   auto out = vtkSmartPointer<vtkDoubleArray>::New();
   const Eigen::MatrixXd& values = array.values;
@@ -154,6 +157,7 @@ std::string write_xml(Data& data) {
   writer->SetInputData(&data);
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(kCompressionLevel);
   writer->SetByteOrderToLittleEndian();
   writer->SetHeaderTypeToUInt32();
   writer->WriteToOutputStringOn();

@@ -16,9 +16,11 @@ namespace geoprior {
 /// none is reached through a symbolic link below the folder.
 class FrameFiles {
  public:
-  explicit FrameFiles(std::filesystem::path run_folder) : folder_(std::move(run_folder)) {}
+  /// @param left_out  parts that frames are read without
+  explicit FrameFiles(std::filesystem::path run_folder, std::set<std::string> left_out = {})
+      : folder_(std::move(run_folder)), left_out_(std::move(left_out)) {}
 
-  /// A frame, equal, bit by bit, to the one that was recorded.
+  /// A frame, equal, bit by bit, to the one that was recorded, but for what is left out.
   /// @param parts  only these of its parts and tables; absent: all. Those it has not are left out
   /// @throws Error  naming a file that is missing or damaged
   [[nodiscard]] Frame frame(const VariantRecord& variant, std::size_t index,
@@ -32,6 +34,7 @@ class FrameFiles {
 
  private:
   std::filesystem::path folder_;
+  std::set<std::string> left_out_;
 };
 
 /// "surface" of "surface_0012.vtp": the part that a file of a frame holds.

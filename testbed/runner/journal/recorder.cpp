@@ -59,8 +59,12 @@ void require_finite(const Frame& frame, std::size_t index, const std::string& me
   }
 }
 
-Recorder::Recorder(fs::path folder, Journal& journal, RunState& state)
-    : folder_(std::move(folder)), files_(folder_), journal_(journal), state_(state) {}
+Recorder::Recorder(fs::path folder, Journal& journal, RunState& state,
+                   std::set<std::string> looked_at)
+    : folder_(std::move(folder)),
+      files_(folder_, std::move(looked_at)),
+      journal_(journal),
+      state_(state) {}
 
 void Recorder::add(const journal::Line& line, bool flush) {
   journal_.append(line, flush);

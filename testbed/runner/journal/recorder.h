@@ -18,7 +18,9 @@ namespace geoprior {
 /// flight that the next program overwrites. No path leads through a symbolic link below the folder.
 class Recorder {
  public:
-  Recorder(std::filesystem::path folder, Journal& journal, RunState& state);
+  /// @param looked_at  parts of frames that are written and not read back
+  Recorder(std::filesystem::path folder, Journal& journal, RunState& state,
+           std::set<std::string> looked_at = {});
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 

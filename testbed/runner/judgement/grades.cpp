@@ -133,7 +133,7 @@ class Grader::Impl {
         topics_(topics),
         topic_(topic_of(experiment, topics)),
         record_(record),
-        files_(std::move(folder)) {}
+        files_(std::move(folder), topic_.looked_at) {}
 
   GradeRecord grade(const ClaimRecord& decided) {
     GradeRecord grade;

@@ -252,7 +252,7 @@ MeasuredRun measure_again(const OpenedRun& run, const std::vector<Topic>& topics
       file == record.provenance.end() ? run.folder() : input_file(file->second), topics);
   leave_out_undecided_times(experiment, record);
   const Topic& topic = topic_of(experiment, topics);
-  const FrameFiles files(run.folder());
+  const FrameFiles files(run.folder(), topic.looked_at);
   for (CaseRecord& one : record.cases) {
     throw_if_stopped();
     const CaseSpec& spec = case_spec(experiment, one.name);

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
 #include "experiments/paper/scene/drawn_surface.h"
 #include "experiments/paper/topic.h"
 #include "testbed/runner/execute.h"
+#include "testbed/runner/judgement/measured_run.h"
 #include "testbed/runner/opened_run.h"
 #include "tests/testbed/run_fixture.h"
 
@@ -42,7 +44,44 @@ name = "hybrid"
 method = "hybrid"
 )";
 
-using DrawnSurfaceInAFile = RunTest;
+class DrawnSurfaceInAFile : public RunTest {
+ protected:
+  void SetUp() override {
+    RunTest::SetUp();
+    ExecuteRequest request;
+    request.out = folder() / "run";
+    request.timing = false;
+    request.only_declared = true;
+    execute(load_experiment(write_experiment("paper/bent", kBent), topics_, {}), topics_, request);
+  }
+
+  /// The topic, with a metric that remembers the parts it is shown.
+  [[nodiscard]] Topic observed_topic() {
+    Topic topic = make_topic();
+    const auto see = [this](const Frame& frame) {
+      for (const auto& [name, part] : frame.parts) seen_.insert(name);
+    };
+    MetricGroup of_frame;
+    of_frame.rows = {{.name = "seen", .unit = "1", .definition = "nothing", .tolerance = {}}};
+    of_frame.of_frame = [see](const Scene&, const Frame& frame, const Frame*) {
+      see(frame);
+      return MetricValues{0};
+    };
+    MetricGroup of_sequence;
+    of_sequence.rows = {
+        {.name = "seen_in_all", .unit = "1", .definition = "nothing", .tolerance = {}}};
+    of_sequence.of_sequence = [see](const Scene&, const FrameSequence& frames) {
+      for (std::size_t i = 0; i < frames.size(); ++i) see(*frames.frame(i));
+      return MetricValues{0};
+    };
+    topic.metrics.push_back(of_frame);
+    topic.metrics.push_back(of_sequence);
+    return topic;
+  }
+
+  std::set<std::string> seen_;
+  const std::vector<Topic> topics_{observed_topic()};
+};
 
 Part part_of(const OpenedRun& run, const FrameRecord& frame, const std::string& name) {
   for (const StoredFile& file : frame.files) {
@@ -53,12 +92,6 @@ Part part_of(const OpenedRun& run, const FrameRecord& frame, const std::string& 
 }
 
 TEST_F(DrawnSurfaceInAFile, IsRecordedBesideTheMeshOfEveryMethod) {
-  const std::vector<Topic> topics{make_topic()};
-  ExecuteRequest request;
-  request.out = folder() / "run";
-  request.timing = false;
-  request.only_declared = true;
-  execute(load_experiment(write_experiment("paper/bent", kBent), topics, {}), topics, request);
   const OpenedRun run(folder() / "run");
   ASSERT_EQ(run.record().cases.at(0).variants.size(), 3U);
   for (const VariantRecord& variant : run.record().cases[0].variants) {
@@ -80,6 +113,15 @@ TEST_F(DrawnSurfaceInAFile, IsRecordedBesideTheMeshOfEveryMethod) {
     const Part drawn = part_of(run, variant.frames.back(), "drawn");
     EXPECT_EQ(drawn.find_array("kind") != nullptr, variant.name == "hybrid");
   }
+}
+
+TEST_F(DrawnSurfaceInAFile, NothingThatIsMeasuredSeesIt) {
+  EXPECT_TRUE(seen_.contains("surface"));
+  EXPECT_FALSE(seen_.contains("drawn")) << "while it runs";
+  seen_.clear();
+  measure_again(OpenedRun(folder() / "run"), topics_);
+  EXPECT_TRUE(seen_.contains("surface"));
+  EXPECT_FALSE(seen_.contains("drawn")) << "read from its files";
 }
 
 }  // namespace
