@@ -9,6 +9,7 @@
 #include "baselines/sound/random_sounds.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "metrics/sound/spectrum.h"
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/sound/process.h"
 #include "models/sound/resonators/panel.h"
@@ -356,6 +357,53 @@ TEST(BlendedFriction, GoesFromOneLoopToTheNextWithTheSpeed) {
   EXPECT_FLOAT_EQ(faster[90000], 3);
   EXPECT_THROW(blended_friction(bank, {}, {{0, 0.1, 0, 0}}), Error);
   EXPECT_THROW(blended_friction(bank, {0}, {}), Error);
+}
+
+/// Of a click alone: share of its power from one frequency to another.
+double click_share(const ClickOptions& options, double low, double high) {
+  SoundEvent event;
+  event.energy = 1e-5;
+  const auto voices = click_voices(options);
+  const EventVoice click = voices->voice(event, {}, {1, "test"});
+  const Eigen::VectorXd samples =
+      Eigen::Map<const Eigen::VectorXf>(click.voice.samples.data(), click.voice.samples.size())
+          .cast<double>();
+  const PowerSpectrum spectrum = whole_spectrum(samples, 48000, SoundWindow::none);
+  return spectrum.power(low, high) / spectrum.power();
+}
+
+// A white sound has (24 - 4)/24 kHz of its power above 4 kHz; the trough takes a hundredth part.
+TEST(Clicks, HoldEveryFrequencyAlikeAndNoConstantPressure) {
+  EXPECT_NEAR(click_share({}, 4000, 24000), 20.0 / 24, 0.01);
+  EXPECT_LT(click_share({}, 0, 20), 1e-5);
+  // Octaves about 500 Hz, 2 kHz and 16 kHz: by what they are wide.
+  for (const double middle : {500.0, 2000.0, 16000.0}) {
+    const double low = middle / std::numbers::sqrt2;
+    EXPECT_NEAR(click_share({}, low, 2 * low) / (low / 24000), 1, 0.02) << middle;
+  }
+  // Half of the amplitude at 1/length, in a band about it.
+  ClickOptions options;
+  for (const double length : {0.01, 0.005}) {
+    options.length = length;
+    const double f = 1 / length;
+    EXPECT_NEAR(click_share(options, 0.99 * f, 1.01 * f) / (0.02 * f / 24000), 0.25, 0.03);
+  }
+}
+
+// What the way to the ears, the wall and the interpolation between samples leave of it.
+TEST(Clicks, AreHeardInTheMixWithoutConstantPressure) {
+  Sheet sheet;
+  sheet.pattern = paper::rectangle_pattern(0.2, 0.3);
+  RunContext context;
+  test::Recording record;
+  make_sound_process(sheet, snapping(sheet), {}, click_voices({}), raw)->run(record, context, {});
+  const auto* samples = reinterpret_cast<const double*>(record.artifacts[0].bytes.data());
+  const Eigen::Index count = record.artifacts[0].bytes.size() / sizeof(double);
+  const Eigen::Map<const Eigen::MatrixXd> stereo(samples, count / 2, 2);
+  const PowerSpectrum spectrum = whole_spectrum(stereo.col(0), 48000, SoundWindow::none);
+  EXPECT_LT(spectrum.power(0, 20), 1e-4 * spectrum.power());
+  EXPECT_GT(spectrum.power(4000, 24000), 0.7 * spectrum.power());
+  EXPECT_GT(spectrum.power(8000, 16000), 0.2 * spectrum.power());
 }
 
 }  // namespace
