@@ -66,7 +66,10 @@ std::vector<DiagnosticEntry> diagnostics() {
                  {"true_peak", "dBFS", "of the whole sound; absent when it is silent"});
   table.unmeasured(
       "metrics hear the sound alone, not what it was made of",
-      {{"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
+      {{"remeshed_share", "1",
+        "cells of the sheet on which the mesh has changed since the frame before: nothing is heard "
+        "there, unless detection.flips.remeshing"},
+       {"bank_checksum", "1", "lowest 48 bits of the FNV-1a hash of the bank that was played"},
        {"gain_lowered", "dB", "by which the whole was made quieter to stay under highest_peak"}});
   return table.rows();
 }

@@ -105,6 +105,17 @@ Event record_of(const SoundEvent& e, double known, const EventVoice& heard) {
   return event;
 }
 
+/// Of the cells of the sheet, those on which the mesh has changed since the frame before.
+double remeshed_share(const SheetField& field) {
+  int inside = 0, changed = 0;
+  for (std::size_t c = 0; c < field.inside.size(); ++c) {
+    if (!field.inside[c]) continue;
+    ++inside;
+    if (field.remeshed[c]) ++changed;
+  }
+  return inside == 0 ? 0 : static_cast<double>(changed) / inside;
+}
+
 bool is_snap(const SoundEvent& event) {
   return event.kind == SoundKind::flap || event.kind == SoundKind::crac;
 }
@@ -182,6 +193,7 @@ class SoundFrames final : public FrameModel {
       surface.arrays.push_back({"pattern", "m", On::points, snapshot.mesh.pattern});
     }
     frame.diagnostics["events"] = static_cast<double>(events_.size());
+    frame.diagnostics["remeshed_share"] = remeshed_share(detector_.field());
     std::vector<std::byte> file;
     if (last) file = mixed(frame, context);
     sink.frame(std::move(frame));

@@ -33,10 +33,20 @@ void describe(OptionVisitor& v, FlipOptions& o) {
            .min = 0});
   v.value("least_area", o.least_area,
           {.doc = "least area of the cells of an event", .unit = "m^2", .min = 0});
+  v.value("remeshing", o.remeshing,
+          {.doc = "whether a cell whose mesh has changed between two frames may flip there, too"});
 }
 
 FlipDetector::FlipDetector(const SoundGrid& grid, const FlipOptions& options)
     : grid_(grid), options_(options), cells_(grid.count()), held_(cells_.size(), {0, 0, 0, 0}) {}
+
+void FlipDetector::begin_anew(Cell& cell, const SheetField& field, double curvature) const {
+  const bool bent = std::abs(curvature) >= options_.threshold;
+  cell.curvature = curvature;
+  cell.sign = bent ? (curvature > 0 ? 1 : -1) : 0;
+  cell.peak = bent ? std::abs(curvature) : 0;
+  cell.left = field.time;
+}
 
 std::vector<CellFlip> FlipDetector::flips_of(const SheetField& field) {
   const double dt = field.time - time_, k_min = options_.threshold;
@@ -46,6 +56,10 @@ std::vector<CellFlip> FlipDetector::flips_of(const SheetField& field) {
     Cell& cell = cells_[c];
     if (!field.inside[c]) continue;
     const double k0 = cell.curvature, k1 = field.curvature[c];
+    if (field.remeshed[c] && !options_.remeshing) {
+      begin_anew(cell, field, k1);
+      continue;
+    }
     cell.curvature = k1;
     // When it was k, if it was so between the two frames.
     const auto when = [&](double k) { return time_ + dt * (k - k0) / (k1 - k0); };

@@ -16,6 +16,7 @@ struct FlipOptions {
   double refractory = 0.02;
   double together = 0.02;
   double least_area = 5e-5;
+  bool remeshing = false;
 };
 void describe(OptionVisitor& v, FlipOptions& options);
 
@@ -43,6 +44,13 @@ struct FlipCluster {
 /// reaches k_min on the other side no later than `sudden` after it left k_min on the old one: both
 /// times are interpolated, so that what is found depends on the frame interval no more than k does.
 /// Cells that hold together and flip within `together` of the first of them are one event.
+///
+/// A flip begins and ends on one mesh. Where a cell's curvature is read from other triangles than in
+/// the frame before (`SheetField::remeshed`), its change is the remeshing's, or nobody knows whose:
+/// the cell begins anew, with the sign that it has on the new mesh, or none. What snaps in that
+/// frame elsewhere is heard; what snaps in a cell just as its mesh changes is not. A mesh that
+/// changes everywhere in every frame is silent: how much of a sheet is not listened to is what
+/// `remeshed_share` says, and counts of events mean nothing without it.
 class FlipDetector {
  public:
   FlipDetector(const SoundGrid& grid, const FlipOptions& options);
@@ -63,6 +71,7 @@ class FlipDetector {
     int sign = 0;           ///< that it had there; 0: never
   };
   [[nodiscard]] std::vector<CellFlip> flips_of(const SheetField& field);
+  void begin_anew(Cell& cell, const SheetField& field, double curvature) const;
   std::vector<FlipCluster> take(double until);
 
   const SoundGrid& grid_;

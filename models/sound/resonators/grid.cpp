@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "models/paper/sheet/pattern_locator.h"
+#include "models/sound/resonators/remeshing.h"
 
 namespace geoprior::sound {
 
@@ -218,14 +219,40 @@ void SheetSampler::smooth(const Cover& cover, Eigen::MatrixX3d& S) const {
   }
 }
 
+/// Cells whose own triangle was not kept or whose neighbours are others, and all to which smoothing
+/// carries what is read there.
+std::vector<char> SheetSampler::remeshed_cells(const Cover& before, const Cover& now) const {
+  const std::vector<int> kept = kept_triangles({before.mesh, before.fit}, {now.mesh, now.fit});
+  std::vector<char> changed(grid_.count(), 0), next(grid_.count());
+  for (int c = 0; c < grid_.count(); ++c) {
+    const int triangle = now.at[c].triangle, was = before.at[c].triangle;
+    const bool same = triangle < 0 ? was < 0 : kept[triangle] >= 0 && kept[triangle] == was;
+    const bool joins = before.beside[0][c] == now.beside[0][c] &&
+                       before.beside[1][c] == now.beside[1][c];
+    changed[c] = same && joins ? 0 : 1;
+  }
+  for (int pass = 0; pass < passes_; ++pass) {
+    for (const Cover::Beside& beside : now.beside) {
+      for (std::size_t c = 0; c < beside.size(); ++c) {
+        next[c] = changed[c] | changed[beside[c][0]] | changed[beside[c][1]];
+      }
+      changed.swap(next);
+    }
+  }
+  return changed;
+}
+
 SheetField SheetSampler::sample(const SheetSnapshot& frame) {
   require_valid(frame, "frame at " + std::to_string(frame.time) + " s");
+  const std::shared_ptr<const Cover> before = cover_;
   const Cover& cover = cover_of(frame.mesh);
   const int n = grid_.count();
   SheetField field;
   field.time = frame.time;
   field.joined = cover.joined;
   field.border = cover.border;
+  field.remeshed.assign(n, 0);
+  if (before && before != cover_) field.remeshed = remeshed_cells(*before, cover);
   field.inside.assign(n, 0);
   field.place = field.velocity = field.normal = Eigen::MatrixX3d::Zero(n, 3);
   field.curvature = Eigen::VectorXd::Zero(n);

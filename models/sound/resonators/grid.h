@@ -59,6 +59,9 @@ struct SheetField {
   /// Whether the sheet holds together from a cell to the one on its right and to that above it.
   std::vector<std::array<char, 2>> joined;
   std::vector<BorderStretch> border;
+  /// Cells whose curvature is read from other triangles than in the frame before: it may differ from
+  /// that frame's though the sheet has not moved.
+  std::vector<char> remeshed;
 
   /// Whether the sheet holds together between a cell and its neighbour `side` (as `neighbours`).
   [[nodiscard]] bool holds(const SoundGrid& grid, int cell, int side) const;
@@ -85,6 +88,7 @@ class SheetSampler {
  private:
   struct Cover;
   [[nodiscard]] const Cover& cover_of(const ShellMesh& mesh);
+  [[nodiscard]] std::vector<char> remeshed_cells(const Cover& before, const Cover& now) const;
   void smooth(const Cover& cover, Eigen::MatrixX3d& S) const;
 
   SoundGrid grid_;
