@@ -38,9 +38,6 @@
 namespace geoprior {
 namespace {
 
-/// Of zlib: a third of the time of VTK's own choice, for files a twentieth larger.
-constexpr int kCompressionLevel = 1;
-
 vtkSmartPointer<vtkDoubleArray> to_vtk(const NamedArray& array) {
   auto out = vtkSmartPointer<vtkDoubleArray>::New();
   const Eigen::MatrixXd& values = array.values;
@@ -151,13 +148,19 @@ vtkSmartPointer<vtkImageData> to_image(const Part& part) {
   return data;
 }
 
+/// Of zlib.
+int level_of(Compression compression) {
+  constexpr int kUsual = 5;  // VTK's own
+  return compression == Compression::light ? 1 : kUsual;
+}
+
 template <class Writer, class Data>
-std::string write_xml(Data& data) {
+std::string write_xml(Data& data, Compression compression) {
   vtkNew<Writer> writer;
   writer->SetInputData(&data);
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(kCompressionLevel);
+  writer->SetCompressionLevel(level_of(compression));
   writer->SetByteOrderToLittleEndian();
   writer->SetHeaderTypeToUInt32();
   writer->WriteToOutputStringOn();
@@ -194,17 +197,17 @@ std::string part_extension(const Part& part) {
   return part.kind == Part::Kind::grid ? ".vti" : ".vtp";
 }
 
-std::string part_to_vtk_xml(const Part& part, double parameter) {
+std::string part_to_vtk_xml(const Part& part, double parameter, Compression compression) {
   if (part.kind == Part::Kind::grid) {
     const auto image = to_image(part);
     add_arrays(part, *image);
     add_fields(part, parameter, *image);
-    return write_xml<vtkXMLImageDataWriter>(*image);
+    return write_xml<vtkXMLImageDataWriter>(*image, compression);
   }
   const auto data = to_poly_data(part);
   add_arrays(part, *data);
   add_fields(part, parameter, *data);
-  return write_xml<vtkXMLPolyDataWriter>(*data);
+  return write_xml<vtkXMLPolyDataWriter>(*data, compression);
 }
 
 std::string pvd_text(const std::vector<PvdEntry>& entries) {

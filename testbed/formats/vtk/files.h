@@ -13,10 +13,14 @@ namespace geoprior {
 /// File name extension of a part: ".vtp" (triangles, lines, points) or ".vti" (grid).
 std::string part_extension(const Part& part);
 
+/// Light: a third of the time, for files a twentieth larger.
+enum class Compression { usual, light };
+
 /// Bytes of the VTK XML file of a part: binary, zlib, Float64 points, a `TimeValue` field array
 /// with the parameter, each array's unit and the names of its values (value_names.h). The same part
 /// gives the same bytes.
-std::string part_to_vtk_xml(const Part& part, double parameter);
+std::string part_to_vtk_xml(const Part& part, double parameter,
+                            Compression compression = Compression::usual);
 
 /// Reads back what `part_to_vtk_xml` wrote (any valid .vtp or .vti), in this process: for frames
 /// whose checksum was verified. @throws Error  naming the file

@@ -57,7 +57,7 @@ Frame FrameFiles::frame(const VariantRecord& variant, std::size_t index,
   for (const StoredFile& file : record.files) {
     const fs::path path = path_below(folder_, file.name);
     const std::string name = part_of_file(path);
-    if (left_out_.contains(name) || (parts && !parts->contains(name))) continue;
+    if (leaves_out(name) || (parts && !parts->contains(name))) continue;
     require_recorded(path, file.sha256);
     if (path.extension() == ".csv") {
       frame.tables[name] = table_from_csv(read_whole_file(path), path.string());

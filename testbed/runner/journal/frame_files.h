@@ -32,6 +32,8 @@ class FrameFiles {
   /// Bytes of any recorded file. @throws Error  as the others
   [[nodiscard]] std::vector<std::byte> bytes(const StoredFile& stored) const;
 
+  [[nodiscard]] bool leaves_out(const std::string& part) const { return left_out_.contains(part); }
+
  private:
   std::filesystem::path folder_;
   std::set<std::string> left_out_;

@@ -84,8 +84,9 @@ std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::
   std::vector<StoredFile> files;
   for (const auto& [name, part] : frame.parts) {
     require_name(name, "a part", "frame " + std::to_string(index));
+    const auto compression = files_.leaves_out(name) ? Compression::light : Compression::usual;
     files.push_back(write(relative / (stem_of_part(name, index) + part_extension(part)),
-                          part_to_vtk_xml(part, frame.parameter)));
+                          part_to_vtk_xml(part, frame.parameter, compression)));
   }
   for (const auto& [name, table] : frame.tables) {
     require_name(name, "a table", "frame " + std::to_string(index));
