@@ -57,6 +57,12 @@ PlateStiffness plate_of(const PaperMaterial& material) {
           material.grain_deg.value_or(0) * kDegree, material.along};
 }
 
+std::vector<DetectedCone> cones_of(const SheetFrame& f) {
+  const CreaseOptions options;
+  return detect_cones(gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing),
+                      options);
+}
+
 /// The plastic curvature of every triangle (m x 3, 1/m); 0 where the frame has none.
 Eigen::MatrixX3d rest_curvature(const SheetFrame& f) {
   const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
@@ -281,6 +287,22 @@ double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference) {
   return hausdorff_distance({f.x(), f.triangles()}, {reference.x(), reference.triangles()},
                             across / kSamplesAcross) /
          across;
+}
+
+Value dcone_distance(const SheetFrame& f, const SheetFrame& reference) {
+  const std::vector<DetectedCone> wanted = cones_of(reference);
+  if (wanted.empty()) return std::nullopt;
+  const std::vector<DetectedCone> found = cones_of(f);
+  const double none = bounding_box(f.sheet.pattern).diagonal().norm();
+  double farthest = 0;
+  for (const DetectedCone& cone : wanted) {
+    double nearest = none;
+    for (const DetectedCone& other : found) {
+      nearest = std::min(nearest, (other.position - cone.position).norm());
+    }
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
 }
 
 }  // namespace geoprior::paper

@@ -130,4 +130,10 @@ Value ring_sector(const SheetFrame& f);
 /// Hausdorff distance of the two surfaces over the width of the pattern.
 double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference);
 
+/// Largest, over the singular points that `detect_cones` finds on the reference, of the distance in
+/// the pattern to the nearest that it finds here (m). Points that the reference lacks cost nothing:
+/// read it beside their number. Without any here the diagonal of the pattern's bounding box; absent
+/// where the reference has none.
+Value dcone_distance(const SheetFrame& f, const SheetFrame& reference);
+
 }  // namespace geoprior::paper

@@ -237,6 +237,20 @@ MetricGroup distance_group() {
            kLow, {1e-7, 1e-6});
 }
 
+MetricGroup cone_distance_group() {
+  return reference_metrics<PaperScene>({"surface"},
+                                       [](const PaperScene& scene, const Frame& frame,
+                                          const Frame& reference) -> std::optional<double> {
+                                         return dcone_distance(sheet_frame(scene, frame),
+                                                               sheet_frame(scene, reference));
+                                       })
+      .row("dcone_distance", "m",
+           "largest distance in the pattern of a singular point that the detector finds on the "
+           "reference variant's surface from the nearest that it finds here; the diagonal of the "
+           "pattern's bounding box when it finds none here, absent when it finds none there",
+           kLow, {5e-3, 0.02});
+}
+
 MetricGroup tear_group() {
   using M = const TearMeasures&;
   return of_frame(tear_measures)
@@ -324,6 +338,7 @@ std::vector<MetricGroup> metrics() {
           elastica_group(),
           sector_group(),
           distance_group(),
+          cone_distance_group(),
           tear_group(),
           energy_gap_group(),
           tearing_force_group(),

@@ -74,7 +74,7 @@ TEST_F(StripMetrics, AFlatSheetHasNothingToReport) {
   EXPECT_NEAR(value("min_altitude", flat).value(), 0.01 / std::sqrt(2), 1e-12);
   // Nothing moves, nothing holds, nothing is shortened, no method spoke.
   for (const char* name : {"kinetic_energy", "handle_force_max", "handle_force_mean", "handle_work",
-                           "elastica_error", "hausdorff_ratio"}) {
+                           "elastica_error", "hausdorff_ratio", "dcone_distance"}) {
     EXPECT_FALSE(value(name, flat).has_value()) << name;
   }
 }
@@ -199,6 +199,33 @@ TEST_F(StripMetrics, DistanceIsOverTheWidthOfThePattern) {
   const Frame frame = frame_of(strip);
   const Frame other = frame_of(coarse);
   EXPECT_NEAR(value("hausdorff_ratio", frame, &other).value(), 0.05, 1e-12);
+}
+
+/// A strip that is flat but for cones of slope 0.3 and 30 mm radius.
+geoprior::sheets::Sheet cones_at(const std::vector<double>& apexes) {
+  return geoprior::sheets::mapped(geoprior::sheets::rectangle(0.2, 0.1, 40, 20),
+                                  [&](const Eigen::Vector2d& p) {
+                                    double height = 0;
+                                    for (const double u : apexes) {
+                                      const double r = std::hypot(p(0) - u, p(1));
+                                      height = std::max(height, 0.3 * (0.03 - r));
+                                    }
+                                    return Eigen::Vector3d(p(0), p(1), height);
+                                  });
+}
+
+// Apexes are vertices of the mesh and points of the detector's grid of 5 mm alike.
+TEST_F(StripMetrics, ConesAreAsFarFromTheReferencesAsTheirApexes) {
+  const Frame flat = frame_of(strip);
+  const Frame one = frame_of(cones_at({-0.05})), beside = frame_of(cones_at({-0.04}));
+  const Frame two = frame_of(cones_at({-0.05, 0.05}));
+  EXPECT_EQ(value("dcone_count", two), 2);
+  EXPECT_EQ(value("dcone_distance", one, &one), 0);
+  EXPECT_NEAR(value("dcone_distance", beside, &one).value(), 0.01, 1e-12);
+  EXPECT_NEAR(value("dcone_distance", one, &two).value(), 0.1, 1e-12);  // that at 0.05 is missed
+  EXPECT_EQ(value("dcone_distance", two, &one), 0);                     // what is extra is free
+  EXPECT_NEAR(value("dcone_distance", flat, &one).value(), std::hypot(0.2, 0.1), 1e-12);
+  EXPECT_FALSE(value("dcone_distance", one, &flat).has_value());
 }
 
 /// Rolled to a polygon that is the elastica of this end slope: the strip's own differential
