@@ -40,6 +40,19 @@ std::optional<double> median_of_snaps(const std::vector<Event>& events, const ch
   return median(values);
 }
 
+/// Of the octaves about 1000 x 10^(0.3 x) Hz, x = -3 ... 4, that `kOctaves` names.
+std::vector<double> octave_levels(const PowerSpectrum& spectrum) {
+  const auto edge = [](double x) { return 1000 * std::pow(10, 0.3 * x); };
+  const double all = spectrum.power(edge(-3.5), edge(4.5));
+  if (!(all > 0)) return {};
+  std::vector<double> levels;
+  for (int x = -3; x <= 4; ++x) {
+    const double power = spectrum.power(edge(x - 0.5), edge(x + 0.5));
+    levels.push_back(10 * std::log10(std::max(power / all, 1e-9)));
+  }
+  return levels;
+}
+
 /// A sound that was recorded alone.
 struct PickedVoice {
   double time = 0;                                            ///< of its event (s)
@@ -104,6 +117,11 @@ std::optional<SoundMeasures> sound_measures(const FrameSequence& frames) {
   out.ruling = median_of_snaps(frames.events(), "ruling_length_m");
   out.border = median_of_snaps(frames.events(), "free_border_m");
   out.latency = median_of_snaps(frames.events(), "latency_s");
+  for (const Event& event : events) {
+    if ((event.kind != "flap" && event.kind != "crac") || event.energy_J < kLargeSnap) continue;
+    ++out.large;
+    out.large_energy += event.energy_J;
+  }
   const auto bursts = sound_bursts(mono, sound.sample_rate, events);
   for (const auto& [kind, heard] : burst_statistics(bursts)) {
     SoundMeasures::Kind& of = out.kinds[kind];
@@ -118,7 +136,9 @@ std::optional<SoundMeasures> sound_measures(const FrameSequence& frames) {
   }
   if (peak > 0) {
     out.peak = decibels_full_scale(peak);
-    out.centroid = spectral_centroid(whole_spectrum(mono, sound.sample_rate, SoundWindow::none));
+    const PowerSpectrum spectrum = whole_spectrum(mono, sound.sample_rate, SoundWindow::none);
+    out.centroid = spectral_centroid(spectrum);
+    out.octaves = octave_levels(spectrum);
   }
   return out;
 }

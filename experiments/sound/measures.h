@@ -1,13 +1,22 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "metrics/sound/bursts.h"
 #include "testbed/frame_sequence.h"
 
 namespace geoprior::sound {
+
+/// Energy of a snap that stands out: ten times the floor of detection, what 5 cm^2 of office paper
+/// hold that are bent to a radius of 10 cm (J).
+inline constexpr double kLargeSnap = 1e-5;
+
+/// Nominal middles of octave bands (IEC 61260-1; Hz).
+inline constexpr std::array<int, 8> kOctaves{125, 250, 500, 1000, 2000, 4000, 8000, 16000};
 
 /// What was recorded of a sound: its events, and the file "sound.wav" that was mixed of them.
 struct SoundMeasures {
@@ -24,9 +33,15 @@ struct SoundMeasures {
   std::optional<double> area;         ///< of the resonators of flaps and cracs, median (m^2)
   std::optional<double> ruling;       ///< their l_r (m)
   std::optional<double> border;       ///< their l_c (m)
+  int large = 0;                      ///< flaps and cracs of `kLargeSnap` or more
+  double large_energy = 0;            ///< of these (J)
   std::optional<double> latency;      ///< median of flaps and cracs (s)
   std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
   std::optional<double> centroid;     ///< of the whole mix (Hz)
+
+  /// Power of the mix in the octaves about `kOctaves`, in dB below that of all of them; none for
+  /// silence.
+  std::vector<double> octaves;
 
   [[nodiscard]] Kind of(const std::string& kind) const {
     const auto found = kinds.find(kind);

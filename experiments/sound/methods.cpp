@@ -29,7 +29,8 @@ std::vector<MethodEntry> methods() {
           "sound", false, "events of an animated sheet, sounded by a bank indexed by resonators",
           "thesis 3.2.3; Schreck et al. 2016",
           [](const S& scene, const SoundOptions& options, RunContext& context) {
-            return make_sound_process(scene.sheet, scene.animation, options.stage,
+            return make_sound_process(scene.sheet, scene.named(options.stage.animation),
+                                      options.stage,
                                       bank_voices(bank_of(scene, options.bank, context.seed()),
                                                   options, scene.sheet.material),
                                       encode);
@@ -37,15 +38,15 @@ std::vector<MethodEntry> methods() {
       method_entry<S, ClickOptions>(
           "clicks", true, "the same events, one click each", "docs/methods/sound.md",
           [](const S& scene, const ClickOptions& options, RunContext&) {
-            return make_sound_process(scene.sheet, scene.animation, options.stage,
-                                      click_voices(options), encode);
+            return make_sound_process(scene.sheet, scene.named(options.stage.animation),
+                                      options.stage, click_voices(options), encode);
           }),
       method_entry<S, RandomSoundOptions>(
           "random-sounds", true, "the same events, a sound of the bank at random each",
           "docs/methods/sound.md",
           [](const S& scene, const RandomSoundOptions& options, RunContext& context) {
             return make_sound_process(
-                scene.sheet, scene.animation, options.stage,
+                scene.sheet, scene.named(options.stage.animation), options.stage,
                 random_voices(bank_of(scene, options.bank, context.seed()), scene.sheet.material),
                 encode);
           }),
@@ -53,8 +54,9 @@ std::vector<MethodEntry> methods() {
           "modal", true, "picked events, sounded by the eigenmodes of their resonators",
           "docs/methods/sound.md; Fahy and Gardonio 2007",
           [](const S& scene, const ModalSoundOptions& options, RunContext&) {
-            return make_sound_process(scene.sheet, scene.animation, options.stage,
-                                      modal_voices(options, scene.sheet.material), encode);
+            return make_sound_process(scene.sheet, scene.named(options.stage.animation),
+                                      options.stage, modal_voices(options, scene.sheet.material),
+                                      encode);
           }),
   };
 }

@@ -57,6 +57,10 @@ MetricGroup sound_group() {
            [](M m) { return static_cast<double>(m.all().count); })
       .row("sound_energy", "J", "energy that they set free", kNone, kSmooth,
            [](M m) { return m.all().energy; })
+      .row("large_snaps", "1", "flaps and cracs of an energy of 10 uJ or more", kNone, kCount,
+           [](M m) { return static_cast<double>(m.large); })
+      .row("large_snap_energy", "J", "energy that these set free", kNone, kSmooth,
+           [](M m) { return m.large_energy; })
       .row("sound_rate", "1/s", "events over the length of the sound", kNone, kSmooth,
            [](M m) { return m.rate; })
       .row("sound_fano", "1",
@@ -86,6 +90,16 @@ MetricGroup sound_group() {
            "sum of f P(f) over sum of P(f) from 20 Hz to 20 kHz, P the squared spectrum of the "
            "whole mixed sound, mono, without a window",
            kNone, {1, 1e-3}, [](M m) { return m.centroid; });
+  for (std::size_t i = 0; i < kOctaves.size(); ++i) {
+    const std::string middle = std::to_string(kOctaves[i]);
+    rows.row("octave_" + middle, "dB",
+             "power of the mix in the octave about " + middle +
+                 " Hz, re that of the octaves from 125 Hz to 16 kHz; -90 at least",
+             kNone, {0.1, 0}, [i](M m) -> Value {
+               if (m.octaves.empty()) return std::nullopt;
+               return m.octaves[i];
+             });
+  }
   for (const char* kind : {"flap", "crac", "friction", "tear"}) {
     const std::string name = kind;
     rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,

@@ -302,6 +302,8 @@ void describe(OptionVisitor& v, PickedOptions& o) {
 }
 
 void describe(OptionVisitor& v, SoundStage& o) {
+  v.value("animation", o.animation,
+          {.doc = "name of one of the scene's others that is listened to; empty: its animation"});
   describe_group(v, "detection", o.detection, {.doc = "how events are found"});
   describe_group(v, "mix", o.mix,
                  {.doc = "where the sheet is heard, and how its sound is written down"});

@@ -45,6 +45,7 @@ using EncodeSound =
     std::function<std::vector<std::byte>(const Eigen::MatrixXd& samples, int sample_rate)>;
 
 struct SoundStage {
+  std::string animation;
   DetectionOptions detection;
   MixOptions mix;
   PickedOptions picked;
@@ -64,8 +65,8 @@ void describe(OptionVisitor& v, SoundStage& options);
 /// is pushed with the numbers ruling_length_m, free_border_m, area_m2, flipped_area_m2,
 /// curvature_per_m, blocked_share, latency_s, sample, and those of its voice. Picked
 /// events are also written alone to "voices.wav", and have voice_start_s, voice_length_s.
-/// Diagnostics: events (since the start), remeshed_share, and after the last frame true_peak (dBFS) and
-/// gain_lowered (dB). Phases: "read", "detect", "resonators", "choose", "mix", "encode", and
+/// Diagnostics: events (since the start), remeshed_share, and after the last frame true_peak (dBFS)
+/// and gain_lowered (dB). Phases: "read", "detect", "resonators", "choose", "mix", "encode", and
 /// "sound": detection, resonators, choice and mix together.
 std::unique_ptr<Process> make_sound_process(const Sheet& sheet,
                                             std::shared_ptr<const SheetAnimation> animation,

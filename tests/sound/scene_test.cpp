@@ -130,6 +130,34 @@ TEST_F(SoundScenes, ListenToAnAnimationOrToSwatches) {
   EXPECT_THAT(error_of([&] { (void)scene(kSquare); }), HasSubstr("nothing to listen to"));
 }
 
+TEST_F(SoundScenes, VariantsListenToTheSameSheetByOthers) {
+  write_frames("sheet", 3);
+  write_snaps("snaps", 31);
+  const std::string lines = "animation = { path = \"sheet_%04d.obj\", frames_per_second = 100 }\n" +
+                            kSquare +
+                            "others = [{ name = \"snapping\", path = \"snaps_%04d.obj\" }]\n";
+  const auto events = [&](const std::string& method, const std::string& animation) {
+    const std::string bank =
+        method.find("sound") == std::string::npos ? "" : ", bank = { sizes = 1, variants = 1 }";
+    return record(load(lines, "method = \"" + method + "\"\noptions = { animation = \"" +
+                                  animation + "\"" + bank + " }\n"))
+        .events.size();
+  };
+  for (const char* method : {"sound", "clicks", "random-sounds", "modal"}) {
+    EXPECT_EQ(events(method, ""), 0U) << method;
+    EXPECT_EQ(events(method, "snapping"), 6U) << method;
+  }
+  EXPECT_THAT(error_of([&] { (void)events("clicks", "silent"); }), HasSubstr("empty, snapping"));
+  const std::string twice =
+      "others = [{ name = \"a\", path = \"snaps_%04d.obj\" },"
+      " { name = \"a\", path = \"snaps_%04d.obj\" }]\n";
+  EXPECT_THAT(error_of([&] {
+                (void)scene("animation = { path = \"sheet_%04d.obj\", frames_per_second = 100 }\n" +
+                            kSquare + twice);
+              }),
+              HasSubstr("a name that no other has"));
+}
+
 TEST_F(SoundScenes, ReadTheFramesOfAnAnimationThatAreAskedFor) {
   write_frames("frames/sheet", 7, 1e-3);
   write_frames("frames/surface", 2, 1e-3);

@@ -233,6 +233,9 @@ void add_paper_and_sound(std::map<std::string, NamedFile>& files) {
                                  "",
                                  "is of another sheet"};
   files["sound animation.path"] = {write_frames, square + frames, kFrames, "clicks"};
+  files["sound others[].path"] = {
+      write_frames, square + frames + "others = [{ name = \"same\", path = \"wave_%d.obj\" }]\n",
+      kFrames, "clicks", "animation = \"same\""};
   files["sound bank"] = {[](const fs::path& folder, bool changed) {
                            const auto tone = [](double cycles) {
                              Sound sound;

@@ -21,6 +21,14 @@ void describe(OptionVisitor& v, HoldOptions& options) {
   describe_list(v, "active", h.active, {.doc = "times at which it holds; empty: always"});
 }
 
+void describe(OptionVisitor& v, OtherAnimationOptions& options) {
+  v.value("name", options.name, {.doc = "what variants call it", .required = true});
+  v.value("path", options.path,
+          {.doc = "frames, as those of the animation",
+           .required = true,
+           .named = Named::file_or_folder});
+}
+
 void describe(OptionVisitor& v, SoundSceneOptions& options) {
   describe_group(v, "pattern", options.pattern, {.doc = "flat shape of the animated sheet"});
   describe_group(v, "material", options.material,
@@ -32,6 +40,10 @@ void describe(OptionVisitor& v, SoundSceneOptions& options) {
   describe_list(v, "obstacles", options.obstacles, {.doc = "bodies that the sheet slides along"});
   describe_group(v, "animation", options.animation,
                  {.doc = "frames of a sheet with coordinates of the pattern: files, or a run's"});
+  describe_list(
+      v, "others", options.others,
+      {.doc = "the same sheet by other methods or on other meshes: variants listen to one "
+              "of them by their option animation"});
   describe_group(v, "swatches", options.swatches,
                  {.doc = "instead of an animation: rectangles of paper of given lengths that snap "
                          "one after the other; pattern and handles are then theirs"});

@@ -23,6 +23,12 @@ struct HoldOptions {
 };
 void describe(OptionVisitor& v, HoldOptions& options);
 
+/// Another animation of the sheet, which variants listen to by its name.
+struct OtherAnimationOptions {
+  std::string name, path;
+};
+void describe(OptionVisitor& v, OtherAnimationOptions& options);
+
 /// `[scene]` of a sound experiment: the sheet as its animation has it.
 struct SoundSceneOptions {
   paper::PatternOptions pattern;
@@ -31,6 +37,7 @@ struct SoundSceneOptions {
   std::vector<HoldOptions> handles;
   std::vector<paper::ObstacleOptions> obstacles;
   std::optional<SheetFileOptions> animation;
+  std::vector<OtherAnimationOptions> others;
   std::optional<SwatchOptions> swatches;
   std::optional<std::string> bank;
 };

@@ -41,6 +41,15 @@ std::map<std::string, double> SoundScene::facts() const {
           {"bending_stiffness", sheet.material.bending_stiffness()}};
 }
 
+std::shared_ptr<const SheetAnimation> SoundScene::named(const std::string& name) const {
+  if (name.empty()) return animation;
+  const auto found = others.find(name);
+  if (found != others.end()) return found->second;
+  std::string allowed = "empty";
+  for (const auto& other : others) allowed += ", " + other.first;
+  throw Error("there is no '" + name + "' among scene.others", "options.animation", allowed);
+}
+
 std::shared_ptr<SoundScene> load_sound_scene(const SoundSceneOptions& options,
                                              const fs::path& folder, std::uint64_t seed) {
   if (options.animation && options.swatches) {
@@ -59,6 +68,20 @@ std::shared_ptr<SoundScene> load_sound_scene(const SoundSceneOptions& options,
   if (options.animation) {
     scene->animation = open_sheet_files(*options.animation, folder, scene->sheet.pattern,
                                         scene->load_warnings, scene->input_files);
+  }
+  for (std::size_t i = 0; i < options.others.size(); ++i) {
+    const OtherAnimationOptions& other = options.others[i];
+    SheetFileOptions files = options.animation.value_or(SheetFileOptions{});
+    files.sequence.path = other.path;
+    const bool is_new =
+        scene->others
+            .emplace(other.name, open_sheet_files(files, folder, scene->sheet.pattern,
+                                                  scene->load_warnings, scene->input_files))
+            .second;
+    if (!is_new || other.name.empty()) {
+      throw Error("is '" + other.name + "'", "scene.others." + std::to_string(i) + ".name",
+                  "a name that no other has");
+    }
   }
   if (options.bank) {
     const fs::path bank = find_folder(*options.bank, folder, "data", "scene.bank");

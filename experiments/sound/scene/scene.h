@@ -18,7 +18,12 @@ class SoundScene final : public ProcessScene {
  public:
   Sheet sheet;
   std::shared_ptr<const SheetAnimation> animation;
-  std::shared_ptr<const SoundBank> bank;  ///< or null: generated
+  std::map<std::string, std::shared_ptr<const SheetAnimation>> others;  ///< by their names
+  std::shared_ptr<const SoundBank> bank;                                ///< or null: generated
+
+  /// The scene's animation for an empty name, else that of the others.
+  /// @throws Error  for a name that none of them has
+  [[nodiscard]] std::shared_ptr<const SheetAnimation> named(const std::string& name) const;
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
 };
