@@ -42,7 +42,7 @@ void describe(OptionVisitor& v, SoundSceneOptions& options) {
                  {.doc = "frames of a sheet with coordinates of the pattern: files, or a run's"});
   describe_list(
       v, "others", options.others,
-      {.doc = "the same sheet by other methods or on other meshes: variants listen to one "
+      {.doc = "animations of the sheet by other methods or on other meshes: variants listen to one "
               "of them by their option animation"});
   describe_group(v, "swatches", options.swatches,
                  {.doc = "instead of an animation: rectangles of paper of given lengths that snap "
