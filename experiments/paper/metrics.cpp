@@ -324,25 +324,12 @@ MetricGroup tear_path_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {isometry_group(),
-          developability_group(),
-          crease_group(),
-          energy_group(),
-          fold_group(),
-          motion_group(),
-          quadric_bending_group(),
-          handle_work_group(),
-          handle_force_group(),
-          mesh_group(),
-          contact_group(),
-          elastica_group(),
-          sector_group(),
-          distance_group(),
-          cone_distance_group(),
-          tear_group(),
-          energy_gap_group(),
-          tearing_force_group(),
-          tear_path_group()};
+  return {
+      isometry_group(),     developability_group(), crease_group(),          energy_group(),
+      fold_group(),         motion_group(),         quadric_bending_group(), handle_work_group(),
+      handle_force_group(), mesh_group(),           contact_group(),         elastica_group(),
+      sector_group(),       distance_group(),       cone_distance_group(),   tear_group(),
+      energy_gap_group(),   tearing_force_group(),  tear_path_group()};
 }
 
 }  // namespace geoprior::paper

@@ -50,6 +50,20 @@ void add_quartile(Rows& rows, const std::string& name, const std::string& suffix
            {1, 0.02}, [read](M m) { return read(m, &Kind::centroid); });
 }
 
+template <class Rows>
+void add_octaves(Rows& rows) {
+  for (std::size_t i = 0; i < kOctaves.size(); ++i) {
+    const std::string middle = std::to_string(kOctaves[i]);
+    rows.row("octave_" + middle, "dB",
+             "power of the mix in the octave about " + middle +
+                 " Hz, re that of the octaves from 125 Hz to 16 kHz; -90 at least",
+             kNone, {0.1, 0}, [i](const SoundMeasures& m) -> Value {
+               if (m.octaves.empty()) return std::nullopt;
+               return m.octaves[i];
+             });
+  }
+}
+
 MetricGroup sound_group() {
   using M = const SoundMeasures&;
   auto rows = of_sound(sound_measures);
@@ -90,16 +104,7 @@ MetricGroup sound_group() {
            "sum of f P(f) over sum of P(f) from 20 Hz to 20 kHz, P the squared spectrum of the "
            "whole mixed sound, mono, without a window",
            kNone, {1, 1e-3}, [](M m) { return m.centroid; });
-  for (std::size_t i = 0; i < kOctaves.size(); ++i) {
-    const std::string middle = std::to_string(kOctaves[i]);
-    rows.row("octave_" + middle, "dB",
-             "power of the mix in the octave about " + middle +
-                 " Hz, re that of the octaves from 125 Hz to 16 kHz; -90 at least",
-             kNone, {0.1, 0}, [i](M m) -> Value {
-               if (m.octaves.empty()) return std::nullopt;
-               return m.octaves[i];
-             });
-  }
+  add_octaves(rows);
   for (const char* kind : {"flap", "crac", "friction", "tear"}) {
     const std::string name = kind;
     rows.row(name + "_events", "1", "events of the kind " + name, kNone, kCount,

@@ -99,7 +99,8 @@ TEST(SoundRemeshing, ASnapIsHeardWhereTheMeshStays) {
   const auto half = heard(frames, false), whole = heard(frames, true);
   ASSERT_EQ(half.size(), 1u);
   ASSERT_EQ(whole.size(), 1u);
-  EXPECT_NEAR(whole.front().flipped_area, kSquareSide * kSquareSide, 0.05 * kSquareSide * kSquareSide);
+  EXPECT_NEAR(whole.front().flipped_area, kSquareSide * kSquareSide,
+              0.05 * kSquareSide * kSquareSide);
   // Cells beside the middle are smoothed with some beyond it, read from triangles beyond it.
   EXPECT_LT(half.front().flipped_area, kSquareSide * kSquareSide / 2);
   EXPECT_GT(half.front().flipped_area, 0.3 * kSquareSide * kSquareSide);
@@ -114,7 +115,8 @@ TEST(SoundRemeshing, ASnapIsHeardAllOverInTheFrameAfterTheMeshHasChanged) {
   }
   const auto events = heard(frames, false);
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_NEAR(events.front().flipped_area, kSquareSide * kSquareSide, 0.05 * kSquareSide * kSquareSide);
+  EXPECT_NEAR(events.front().flipped_area, kSquareSide * kSquareSide,
+              0.05 * kSquareSide * kSquareSide);
 }
 
 // What it costs: silence here is no merit, and `remeshed` says so.

@@ -45,10 +45,10 @@ struct FlipCluster {
 /// times are interpolated, so that what is found depends on the frame interval no more than k does.
 /// Cells that hold together and flip within `together` of the first of them are one event.
 ///
-/// A flip begins and ends on one mesh. Where a cell's curvature is read from other triangles than in
-/// the frame before (`SheetField::remeshed`), its change is the remeshing's, or nobody knows whose:
-/// the cell begins anew, with the sign that it has on the new mesh, or none. What snaps in that
-/// frame elsewhere is heard; what snaps in a cell just as its mesh changes is not. A mesh that
+/// A flip begins and ends on one mesh. Where a cell's curvature is read from other triangles than
+/// in the frame before (`SheetField::remeshed`), its change is the remeshing's, or nobody knows
+/// whose: the cell begins anew, with the sign that it has on the new mesh, or none. What snaps in
+/// that frame elsewhere is heard; what snaps in a cell just as its mesh changes is not. A mesh that
 /// changes everywhere in every frame is silent: how much of a sheet is not listened to is what
 /// `remeshed_share` says, and counts of events mean nothing without it.
 class FlipDetector {

@@ -227,8 +227,8 @@ std::vector<char> SheetSampler::remeshed_cells(const Cover& before, const Cover&
   for (int c = 0; c < grid_.count(); ++c) {
     const int triangle = now.at[c].triangle, was = before.at[c].triangle;
     const bool same = triangle < 0 ? was < 0 : kept[triangle] >= 0 && kept[triangle] == was;
-    const bool joins = before.beside[0][c] == now.beside[0][c] &&
-                       before.beside[1][c] == now.beside[1][c];
+    const bool joins =
+        before.beside[0][c] == now.beside[0][c] && before.beside[1][c] == now.beside[1][c];
     changed[c] = same && joins ? 0 : 1;
   }
   for (int pass = 0; pass < passes_; ++pass) {

@@ -59,8 +59,8 @@ struct SheetField {
   /// Whether the sheet holds together from a cell to the one on its right and to that above it.
   std::vector<std::array<char, 2>> joined;
   std::vector<BorderStretch> border;
-  /// Cells whose curvature is read from other triangles than in the frame before: it may differ from
-  /// that frame's though the sheet has not moved.
+  /// Cells whose curvature is read from other triangles than in the frame before: it may differ
+  /// from that frame's though the sheet has not moved.
   std::vector<char> remeshed;
 
   /// Whether the sheet holds together between a cell and its neighbour `side` (as `neighbours`).
