@@ -57,10 +57,20 @@ PlateStiffness plate_of(const PaperMaterial& material) {
           material.grain_deg.value_or(0) * kDegree, material.along};
 }
 
-std::vector<DetectedCone> cones_of(const SheetFrame& f) {
-  const CreaseOptions options;
-  return detect_cones(gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing),
-                      options);
+GriddedSheet gridded(const SheetFrame& f) {
+  return gridded_sheet(f.pattern, f.x(), f.triangles(), CreaseOptions{}.grid_spacing);
+}
+
+/// The singular points that the detector finds in a frame; `grid()` is it gridded.
+template <class Grid>
+DetectedCones cones_of(ConeMemo& memo, const SheetFrame& f, Grid grid) {
+  ContentKey key;
+  key.add_matrix(f.pattern);
+  key.add_matrix(f.x());
+  key.add_matrix(f.triangles());
+  return memo.get(key, [&] {
+    return std::make_shared<const std::vector<DetectedCone>>(detect_cones(grid(), CreaseOptions{}));
+  });
 }
 
 /// The plastic curvature of every triangle (m x 3, 1/m); 0 where the frame has none.
@@ -149,12 +159,13 @@ DevelopabilitySummary sheet_developability(const SheetFrame& f) {
   return developability({f.x(), f.triangles()});
 }
 
-CreaseMeasures crease_measures(const SheetFrame& f) {
+CreaseMeasures crease_measures(ConeMemo& memo, const SheetFrame& f) {
   CreaseMeasures out;
   const CreaseOptions options;
-  const GriddedSheet sheet = gridded_sheet(f.pattern, f.x(), f.triangles(), options.grid_spacing);
+  const GriddedSheet sheet = gridded(f);
   out.crease_length = crease_length(sheet, options);
-  out.cones = static_cast<int>(detect_cones(sheet, options).size());
+  const auto grid = [&]() -> const GriddedSheet& { return sheet; };
+  out.cones = static_cast<int>(cones_of(memo, f, grid)->size());
   const std::vector<double> facets = facet_areas(sheet, options);
   out.facets = static_cast<int>(facets.size());
   if (facets.empty()) return out;
@@ -289,15 +300,15 @@ double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference) {
          across;
 }
 
-Value dcone_distance(const SheetFrame& f, const SheetFrame& reference) {
-  const std::vector<DetectedCone> wanted = cones_of(reference);
-  if (wanted.empty()) return std::nullopt;
-  const std::vector<DetectedCone> found = cones_of(f);
+Value dcone_distance(ConeMemo& memo, const SheetFrame& f, const SheetFrame& reference) {
+  const DetectedCones wanted = cones_of(memo, reference, [&] { return gridded(reference); });
+  if (wanted->empty()) return std::nullopt;
+  const DetectedCones found = cones_of(memo, f, [&] { return gridded(f); });
   const double none = bounding_box(f.sheet.pattern).diagonal().norm();
   double farthest = 0;
-  for (const DetectedCone& cone : wanted) {
+  for (const DetectedCone& cone : *wanted) {
     double nearest = none;
-    for (const DetectedCone& other : found) {
+    for (const DetectedCone& other : *found) {
       nearest = std::min(nearest, (other.position - cone.position).norm());
     }
     farthest = std::max(farthest, nearest);

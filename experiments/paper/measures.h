@@ -3,10 +3,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/frame.h"
 #include "core/geometry/curvature_fit.h"
 #include "experiments/paper/scene/scene.h"
+#include "metrics/developability/creases.h"
 #include "metrics/developability/developability.h"
 #include "metrics/isometry/bending_energy.h"
 #include "metrics/isometry/isometry.h"
@@ -48,7 +50,10 @@ struct CreaseMeasures {
   int facets = 0;
   Value facet_area_median;  ///< m^2; absent when all facets are dust
 };
-CreaseMeasures crease_measures(const SheetFrame& f);
+/// Singular points of the last frames: those of the reference are asked for with every variant.
+using DetectedCones = std::shared_ptr<const std::vector<DetectedCone>>;
+using ConeMemo = Memo<DetectedCones>;
+CreaseMeasures crease_measures(ConeMemo& memo, const SheetFrame& f);
 
 /// J; kinetic energy absent without velocities.
 struct EnergyMeasures {
@@ -134,6 +139,6 @@ double hausdorff_ratio(const SheetFrame& f, const SheetFrame& reference);
 /// the pattern to the nearest that it finds here (m). Points that the reference lacks cost nothing:
 /// read it beside their number. Without any here the diagonal of the pattern's bounding box; absent
 /// where the reference has none.
-Value dcone_distance(const SheetFrame& f, const SheetFrame& reference);
+Value dcone_distance(ConeMemo& memo, const SheetFrame& f, const SheetFrame& reference);
 
 }  // namespace geoprior::paper

@@ -70,9 +70,9 @@ MetricGroup developability_group() {
            kHigh, kShare, &M::thinness);
 }
 
-MetricGroup crease_group() {
+MetricGroup crease_group(const std::shared_ptr<ConeMemo>& memo) {
   using M = CreaseMeasures;
-  return of_frame(crease_measures)
+  return of_frame([memo](const SheetFrame& f) { return crease_measures(*memo, f); })
       .row("crease_length", "m",
            "length in the pattern of the folds where the normal turns by more than 20 degrees "
            "within about 5 mm, by crossings of the links of a 2.5 mm grid (Cauchy, Crofton)",
@@ -237,11 +237,11 @@ MetricGroup distance_group() {
            kLow, {1e-7, 1e-6});
 }
 
-MetricGroup cone_distance_group() {
+MetricGroup cone_distance_group(const std::shared_ptr<ConeMemo>& memo) {
   return reference_metrics<PaperScene>({"surface"},
-                                       [](const PaperScene& scene, const Frame& frame,
-                                          const Frame& reference) -> std::optional<double> {
-                                         return dcone_distance(sheet_frame(scene, frame),
+                                       [memo](const PaperScene& scene, const Frame& frame,
+                                              const Frame& reference) -> std::optional<double> {
+                                         return dcone_distance(*memo, sheet_frame(scene, frame),
                                                                sheet_frame(scene, reference));
                                        })
       .row("dcone_distance", "m",
@@ -324,12 +324,26 @@ MetricGroup tear_path_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  return {
-      isometry_group(),     developability_group(), crease_group(),          energy_group(),
-      fold_group(),         motion_group(),         quadric_bending_group(), handle_work_group(),
-      handle_force_group(), mesh_group(),           contact_group(),         elastica_group(),
-      sector_group(),       distance_group(),       cone_distance_group(),   tear_group(),
-      energy_gap_group(),   tearing_force_group(),  tear_path_group()};
+  const auto cones = std::make_shared<ConeMemo>();
+  return {isometry_group(),
+          developability_group(),
+          crease_group(cones),
+          energy_group(),
+          fold_group(),
+          motion_group(),
+          quadric_bending_group(),
+          handle_work_group(),
+          handle_force_group(),
+          mesh_group(),
+          contact_group(),
+          elastica_group(),
+          sector_group(),
+          distance_group(),
+          cone_distance_group(cones),
+          tear_group(),
+          energy_gap_group(),
+          tearing_force_group(),
+          tear_path_group()};
 }
 
 }  // namespace geoprior::paper

@@ -1,11 +1,10 @@
 #include "experiments/paper/topic.h"
 
+#include "experiments/paper/scene/drawn_surface.h"
 #include "experiments/paper/scene/scene.h"
 
 namespace geoprior::paper {
 namespace {
-
-constexpr const char* kDrawn = "drawn";  // of add_drawn_surface
 
 /// The pieces of the hybrid coloured, on white paper; what a method does not have is not drawn.
 FigureView paper_view() {
@@ -17,7 +16,7 @@ FigureView paper_view() {
   view.shading = FigureView::Shading::flat;
   view.material = FigureView::Material::paper;
   view.edges = true;
-  view.plain_part = kDrawn;
+  view.plain_part = DrawnSurface::kPart;
   view.overlays = {"rulings", "singular_points", "handles"};
   return view;
 }
@@ -42,7 +41,7 @@ Topic make_topic() {
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.view = paper_view();
-  topic.looked_at = {kDrawn};
+  topic.looked_at = {DrawnSurface::kPart};
   return topic;
 }
 

@@ -10,6 +10,7 @@
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/sound/events/detector.h"
 #include "tests/paper/meshes.h"
+#include "tests/sound/all_events.h"
 
 namespace geoprior::sound {
 namespace {
@@ -34,19 +35,6 @@ SheetSnapshot rolled_at(const ShellMesh& mesh, double time, double curvature, do
 
 ShellMesh a_mesh(const Sheet& sheet, int triangles = 1500) {
   return paper::uniform_mesh(sheet.pattern, triangles, paper::UniformLayout::delaunay, {}, 1);
-}
-
-std::vector<SoundEvent> all_events(const Sheet& sheet, const DetectionOptions& options,
-                                   const std::vector<SheetSnapshot>& frames) {
-  RunContext context;
-  SoundDetector detector(sheet, options);
-  std::vector<SoundEvent> all;
-  const auto add = [&](std::vector<SoundEvent> more) {
-    for (SoundEvent& e : more) all.push_back(std::move(e));
-  };
-  for (const SheetSnapshot& frame : frames) add(detector.push(frame, context));
-  add(detector.finish(context));
-  return all;
 }
 
 /// A sheet whose curvature is a function of time.

@@ -7,6 +7,7 @@
 #include "models/paper/meshing/uniform_mesh.h"
 #include "models/sound/events/detector.h"
 #include "tests/paper/meshes.h"
+#include "tests/sound/all_events.h"
 
 namespace geoprior::sound {
 namespace {
@@ -51,17 +52,9 @@ SheetSnapshot rolled(const ShellMesh& mesh, double time, double curvature) {
 }
 
 std::vector<SoundEvent> heard(const std::vector<SheetSnapshot>& frames, bool remeshing) {
-  const Sheet sheet = a_square();
-  RunContext context;
   DetectionOptions options;
   options.flips.remeshing = remeshing;
-  SoundDetector detector(sheet, options);
-  std::vector<SoundEvent> all;
-  for (const SheetSnapshot& frame : frames) {
-    for (SoundEvent& e : detector.push(frame, context)) all.push_back(std::move(e));
-  }
-  for (SoundEvent& e : detector.finish(context)) all.push_back(std::move(e));
-  return all;
+  return all_events(a_square(), options, frames);
 }
 
 std::vector<ShellMesh> two_meshes() {

@@ -348,7 +348,7 @@ void add_drawn_surface(Frame& frame) {
   add_cells(surface, "piece", curved.parent, drawn);
   add_cells(surface, "kind", curved.parent, drawn);
   frame.diagnostics["drawn_distance"] = curved.distance;
-  frame.parts["drawn"] = std::move(drawn);
+  frame.parts[DrawnSurface::kPart] = std::move(drawn);
 }
 
 }  // namespace geoprior::paper

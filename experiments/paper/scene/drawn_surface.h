@@ -31,6 +31,7 @@ namespace geoprior::paper {
 /// have without that bound. What it does not know: how wide a crease is (it is a line), and that a
 /// sheet may not reach through an obstacle that its facets only touch.
 struct DrawnSurface {
+  static constexpr const char* kPart = "drawn";  ///< of a frame
   static constexpr double kYieldedFold = 12;  ///< plastic curvature times width, at an edge (deg)
   static constexpr double kSharpFold = 75;    ///< deg
   static constexpr double kUneven = 4;        ///< deg

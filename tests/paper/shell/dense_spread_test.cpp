@@ -78,7 +78,8 @@ int cones_at_the_end(const PaperScene& scene, Process& process, std::uint64_t se
   Recording recording;
   RunContext context(seed);
   process.run(recording, context, {});
-  return crease_measures(sheet_frame(scene, recording.frames.back())).cones;
+  ConeMemo memo;
+  return crease_measures(memo, sheet_frame(scene, recording.frames.back())).cones;
 }
 
 int dense_cones(const PaperScene& scene, int triangles, std::uint64_t seed) {
