@@ -85,6 +85,24 @@ std::optional<std::vector<PickedVoice>> picked_voices(const FrameSequence& frame
   return voices;
 }
 
+/// How many flaps and cracs there are, of which energy.
+void count_snaps(const std::vector<Event>& events, SoundMeasures& out) {
+  constexpr double kRoot = 3.1622776601683795;  // of ten
+  constexpr std::array<double, kSnapEnergies.size()> kFrom{1e-6, kRoot * 1e-6, 1e-5, kRoot * 1e-5,
+                                                           1e-4, kRoot * 1e-4, 1e-3};  // J
+  static_assert(kFrom[2] == kLargeSnap);
+  for (const Event& event : events) {
+    if (event.kind != "flap" && event.kind != "crac") continue;
+    const auto above = std::upper_bound(kFrom.begin(), kFrom.end(), event.energy_J);
+    if (above != kFrom.begin()) {
+      ++out.by_energy[static_cast<std::size_t>(above - kFrom.begin() - 1)];
+    }
+    if (event.energy_J < kLargeSnap) continue;
+    ++out.large;
+    out.large_energy += event.energy_J;
+  }
+}
+
 }  // namespace
 
 SoundMeasures::Kind SoundMeasures::all() const {
@@ -117,11 +135,7 @@ std::optional<SoundMeasures> sound_measures(const FrameSequence& frames) {
   out.ruling = median_of_snaps(frames.events(), "ruling_length_m");
   out.border = median_of_snaps(frames.events(), "free_border_m");
   out.latency = median_of_snaps(frames.events(), "latency_s");
-  for (const Event& event : events) {
-    if ((event.kind != "flap" && event.kind != "crac") || event.energy_J < kLargeSnap) continue;
-    ++out.large;
-    out.large_energy += event.energy_J;
-  }
+  count_snaps(events, out);
   const auto bursts = sound_bursts(mono, sound.sample_rate, events);
   for (const auto& [kind, heard] : burst_statistics(bursts)) {
     SoundMeasures::Kind& of = out.kinds[kind];

@@ -15,6 +15,9 @@ namespace geoprior::sound {
 /// hold that are bent to a radius of 10 cm (J).
 inline constexpr double kLargeSnap = 1e-5;
 
+/// Energies that snaps are counted from, two a decade (uJ, nominal: 3 stands for the root of 10).
+inline constexpr std::array<int, 7> kSnapEnergies{1, 3, 10, 30, 100, 300, 1000};
+
 /// Nominal middles of octave bands (IEC 61260-1; Hz).
 inline constexpr std::array<int, 8> kOctaves{125, 250, 500, 1000, 2000, 4000, 8000, 16000};
 
@@ -35,9 +38,11 @@ struct SoundMeasures {
   std::optional<double> border;       ///< their l_c (m)
   int large = 0;                      ///< flaps and cracs of `kLargeSnap` or more
   double large_energy = 0;            ///< of these (J)
-  std::optional<double> latency;      ///< median of flaps and cracs (s)
-  std::optional<double> peak;         ///< true peak of the mix (dBFS); absent for silence
-  std::optional<double> centroid;     ///< of the whole mix (Hz)
+  /// Flaps and cracs from each of `kSnapEnergies` up to the next.
+  std::array<int, kSnapEnergies.size()> by_energy{};
+  std::optional<double> latency;   ///< median of flaps and cracs (s)
+  std::optional<double> peak;      ///< true peak of the mix (dBFS); absent for silence
+  std::optional<double> centroid;  ///< of the whole mix (Hz)
 
   /// Power of the mix in the octaves about `kOctaves`, in dB below that of all of them; none for
   /// silence.

@@ -64,6 +64,19 @@ void add_octaves(Rows& rows) {
   }
 }
 
+template <class Rows>
+void add_energies(Rows& rows) {
+  for (std::size_t i = 0; i < kSnapEnergies.size(); ++i) {
+    const std::string from = std::to_string(kSnapEnergies[i]);
+    const bool last = i + 1 == kSnapEnergies.size();
+    const std::string until =
+        last ? " uJ or more" : " uJ to " + std::to_string(kSnapEnergies[i + 1]) + " uJ";
+    rows.row("snaps_" + from + "uJ", "1",
+             "flaps and cracs of an energy of " + from + until + " (3: the root of 10)", kNone,
+             kCount, [i](const SoundMeasures& m) { return static_cast<double>(m.by_energy[i]); });
+  }
+}
+
 MetricGroup sound_group() {
   using M = const SoundMeasures&;
   auto rows = of_sound(sound_measures);
@@ -104,6 +117,7 @@ MetricGroup sound_group() {
            "sum of f P(f) over sum of P(f) from 20 Hz to 20 kHz, P the squared spectrum of the "
            "whole mixed sound, mono, without a window",
            kNone, {1, 1e-3}, [](M m) { return m.centroid; });
+  add_energies(rows);
   add_octaves(rows);
   for (const char* kind : {"flap", "crac", "friction", "tear"}) {
     const std::string name = kind;

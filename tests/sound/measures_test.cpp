@@ -45,6 +45,15 @@ TEST(SoundMeasures, CountsSnapsOfTenMicrojoulesAndMoreOnly) {
   EXPECT_NEAR(m.large_energy, 4e-5, 1e-12);
 }
 
+TEST(SoundMeasures, SnapsAreCountedInBinsOfHalfADecade) {
+  const SoundMeasures m =
+      measured({a_snap("flap", 0.2, 1e-5), a_snap("crac", 0.3, 3.1e-5), a_snap("crac", 0.4, 3.2e-5),
+                a_snap("crac", 0.6, 9.9e-6), a_snap("crac", 0.7, 1e-6), a_snap("flap", 0.9, 9.9e-7),
+                a_snap("crac", 1.1, 1), a_snap("friction", 1.3, 1)});
+  EXPECT_EQ(m.by_energy, (std::array<int, 7>{1, 1, 2, 1, 0, 0, 1}));
+  EXPECT_EQ(m.large, 2 + 1 + 0 + 0 + 1);
+}
+
 // Of white noise each octave has twice the power of the one below. A band of 88 Hz that is heard
 // for two seconds has some 350 independent values: a standard deviation of a third of a dB.
 TEST(SoundMeasures, OctavesOfWhiteNoiseRiseByThreeDecibels) {
