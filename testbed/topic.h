@@ -270,6 +270,8 @@ struct Topic {
   std::set<std::string> looked_at = {};
   std::vector<TopicCommand> commands = {};
   std::vector<TopicFile> files = {};
+  /// Artifacts of text whose lines are printed, with their folder, when a run ends.
+  std::set<std::string> told_files = {};
 };
 
 /// Rows of all groups of the topic's metric table, in their order.

@@ -25,6 +25,16 @@ TriMesh surface_mesh(const Frame& frame) {
   return {part.points, part.triangles};
 }
 
+/// Largest relative difference of two stretches that are sewn together.
+std::optional<double> largest_mismatch(const Frame& frame) {
+  std::optional<double> largest;
+  for (const auto& [left, right] : sewn_lines(frame))
+    largest = std::max(largest.value_or(0), seam_mismatch(left, right).relative);
+  return largest;
+}
+
+}  // namespace
+
 std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   const Part& pattern = frame.require_part("pattern", Part::Kind::triangles);
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
@@ -37,16 +47,6 @@ std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   return pieces_apart(pattern.points.leftCols<2>(), x, pattern.triangles,
                       std::span<const int>(number.data(), piece.size()));
 }
-
-/// Largest relative difference of two stretches that are sewn together.
-std::optional<double> largest_mismatch(const Frame& frame) {
-  std::optional<double> largest;
-  for (const auto& [left, right] : sewn_lines(frame))
-    largest = std::max(largest.value_or(0), seam_mismatch(left, right).relative);
-  return largest;
-}
-
-}  // namespace
 
 SurfaceMeasures surface_measures(const SketchScene& /*scene*/, const Frame& frame) {
   const TriMesh mesh = surface_mesh(frame);

@@ -23,6 +23,9 @@ struct SilhouetteMeasures {
 };
 SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame);
 
+/// The pieces of a frame's pattern.
+std::vector<FlatPiece> flat_pieces(const Frame& frame);
+
 /// Of the pattern of the last frame; nothing in the others.
 struct PatternMeasures {
   std::optional<FlatteningSummary> flat;

@@ -6,6 +6,7 @@
 #include "experiments/sketch/garment_measures.h"
 #include "experiments/sketch/layer_measures.h"
 #include "experiments/sketch/measures.h"
+#include "experiments/sketch/seam_measures.h"
 #include "experiments/sketch/texture_measures.h"
 #include "experiments/sketch/topic.h"
 #include "testbed/metric_rows.h"
@@ -226,6 +227,7 @@ std::vector<MetricGroup> metrics() {
       surface_group(), silhouette_group(), pattern_group(), truth_group(), cut_group(),
       arc_group(),     layer_group(),      sector_group(),  edge_group(),  texture_group()};
   for (MetricGroup& group : garment_metrics()) groups.push_back(std::move(group));
+  for (MetricGroup& group : seam_metrics()) groups.push_back(std::move(group));
   return groups;
 }
 

@@ -12,6 +12,7 @@
 #include "core/geometry/topology.h"
 #include "models/sketch/drawing/drawing_part.h"
 #include "models/sketch/flatten/flat_stretch.h"
+#include "models/sketch/pattern/piece_names.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -173,8 +174,9 @@ class SketchFrames final : public FrameModel {
   }
 
   void record(int number, FrameSink& sink, RunContext& context) override {
-    Frame frame = sketch_frame(prepared_, method_->positions(), number);
     const bool last = number + 1 == frame_count();
+    const Eigen::MatrixX3d X = last ? faired() : method_->positions();
+    Frame frame = sketch_frame(prepared_, X, number);
     if (last && suggester_.suggest) {
       if (suggester_.apply == 0) suggest(context);
       if (!suggestions_.empty()) frame.parts["suggestions"] = suggestions_part(suggestions_);
@@ -186,14 +188,14 @@ class SketchFrames final : public FrameModel {
       MadePattern made;
       {
         const Phase phase(context, "flatten");
-        made = make_pattern({method_->positions(), prepared_.surface.hull.mesh.F},
-                            seam_edges(prepared_.surface), input_.pattern);
+        made = make_pattern({X, prepared_.surface.hull.mesh.F}, seam_edges(prepared_.surface),
+                            input_.pattern);
+        name_pieces(made.pattern, input_.drawing, prepared_.surface, X);
       }
       add_pattern(frame, made);
       if (input_.files) {
         const Phase phase(context, "record");
-        for (Artifact& file : input_.files(made.pattern, method_->positions()))
-          sink.artifact(std::move(file));
+        for (Artifact& file : input_.files(made.pattern, X)) sink.artifact(std::move(file));
       }
     }
     const Phase phase(context, "record");
@@ -209,6 +211,16 @@ class SketchFrames final : public FrameModel {
     const Phase phase(context, "suggest");
     suggestions_ = suggester_.suggest({method_->positions(), prepared_.surface.hull.mesh.F},
                                       seam_edges(prepared_.surface), input_.pattern);
+  }
+
+  /// The surface with suggested seams, which were drawn in no view, made fair.
+  [[nodiscard]] Eigen::MatrixX3d faired() const {
+    const std::vector<StrokePath>& seams = prepared_.surface.seams;
+    std::vector<SeamEdge> slide, stay;
+    for (const SeamEdge& e : seam_edges(prepared_.surface))
+      (seams[e.seam].view < 0 ? slide : stay).push_back(e);
+    if (!suggester_.fair || slide.empty()) return method_->positions();
+    return suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide, stay);
   }
 
   /// Cuts the first suggestions; the method begins anew on what they leave.

@@ -11,6 +11,7 @@
 
 #include "core/connectivity.h"
 #include "models/sketch/drawing/polyline.h"
+#include "solvers/sketch/pattern/fair_seams.h"
 #include "solvers/sketch/surface/pinned_transfer.h"
 
 namespace geoprior::sketch {
@@ -220,6 +221,7 @@ std::unique_ptr<Process> make_several_views_process(
     };
     suggester.apply = options.suggest->apply;
     suggester.iterations = options.suggest->iterations;
+    suggester.fair = fair_seams;
     suggester.files = std::move(suggestion_files);
   }
   return make_sketch_process(

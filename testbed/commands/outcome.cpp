@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -222,6 +223,24 @@ void say_claims(const RunRecord& record, bool all_numbers) {
     if (!all_numbers) continue;
     if (!claim.nearest.empty()) say(indent + "fails by least: " + claim.nearest);
     if (!claim.passed_too.empty()) say(indent + "holds for " + claim.passed_too + " too");
+  }
+}
+
+void say_told_files(const RunRecord& record, const std::set<std::string>& names,
+                    const std::filesystem::path& folder, bool on_stdout) {
+  const auto tell = [&](const std::string& line) {
+    on_stdout ? print_out(printable(line) + "\n") : say(line);
+  };
+  for (const CaseRecord& c : record.cases) {
+    for (const VariantRecord& variant : c.variants) {
+      for (const StoredFile& file : variant.artifacts) {
+        const std::filesystem::path path = folder / file.name;
+        if (!names.contains(path.filename().string())) continue;
+        tell(path.parent_path().string() + ":");
+        std::ifstream in(path);
+        for (std::string line; std::getline(in, line);) tell("  " + line);
+      }
+    }
   }
 }
 

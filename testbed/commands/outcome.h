@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ std::string grade_text(const ClaimRecord& claim);
 /// Claims with their verdicts, one line each; below it the numbers of those that fall short, or of
 /// all.
 void say_claims(const RunRecord& record, bool all_numbers);
+
+/// The lines of artifacts of these names (`Topic::told_files`), below the folder that each is in.
+void say_told_files(const RunRecord& record, const std::set<std::string>& names,
+                    const std::filesystem::path& folder, bool on_stdout);
 
 /// Studies with their intervals.
 void say_studies(const RunRecord& record);

@@ -99,6 +99,8 @@ int run_command(const CommandContext& context, const RunRequest& request) {
   } catch (const Stopped&) {
     return report_stop(context, request, result.folder);
   }
+  say_told_files(result.record, topic_of(experiment, context.topics).told_files, result.folder,
+                 !context.json);
   say_outcome(result, pictures, request.table || !pictures.summary);
   if (context.json) {
     nlohmann::ordered_json json = outcome_json(result.record, result.folder);

@@ -12,7 +12,7 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr int kStrainDecimals = 2;     ///< of coordinates (mm)
+constexpr int kStrainDecimals = 2;      ///< of coordinates (mm)
 constexpr double kStrainOutline = 0.3;  ///< width of lines (mm)
 constexpr double kStrainCut = 1;        ///< width of suggested cuts (mm)
 /// Width of the line around each triangle, in its colour, so that no gap shows between two (mm).
@@ -35,14 +35,17 @@ class StrainSvg {
 
   std::string write() {
     const std::string w = strain_number(sheet_.size.x()), h = strain_number(sheet_.size.y());
-    out_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-           "version=\"1.1\" width=\"" +
-           w + "mm\" height=\"" + h + "mm\" viewBox=\"0 0 " + w + " " + h +
-           "\" stroke-linejoin=\"round\">\n<rect width=\"" + w + "\" height=\"" + h +
-           "\" fill=\"#ffffff\"/>\n";
+    out_ =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+        "version=\"1.1\" width=\"" +
+        w + "mm\" height=\"" + h + "mm\" viewBox=\"0 0 " + w + " " + h +
+        "\" stroke-linejoin=\"round\">\n<rect width=\"" + w + "\" height=\"" + h +
+        "\" fill=\"#ffffff\"/>\n";
     for (const StrainPatch& patch : sheet_.patches) write_patch(patch);
     write_lines("outlines", sheet_.outlines, kStrainOutline, "");
-    write_lines("added", sheet_.added, kStrainCut, " stroke-dasharray=\"6 3\"");
+    write_lines("added", sheet_.added, kStrainCut,
+                " stroke-dasharray=\"" + strain_number(6 * sheet_.unit) + " " +
+                    strain_number(3 * sheet_.unit) + "\"");
     write_lines("worst", sheet_.worst, 2 * kStrainOutline, "");
     for (const SheetText& text : sheet_.texts) write_text(text);
     return std::move(out_) + "</svg>\n";
@@ -65,7 +68,7 @@ class StrainSvg {
   void write_lines(const std::string& name, const std::vector<SheetLine>& lines, double width,
                    const std::string& dashes) {
     out_ += "<g id=\"" + name + "\" fill=\"none\" stroke=\"#000000\" stroke-width=\"" +
-            strain_number(width) + "\"" + dashes + ">\n";
+            strain_number(sheet_.unit * width) + "\"" + dashes + ">\n";
     for (const SheetLine& line : lines) {
       out_ += "<path d=\"";
       for (std::size_t i = 0; i < line.points.size(); ++i)
@@ -97,7 +100,9 @@ class StrainPdf {
     out_ = "1 j 1 J\n";
     for (const StrainPatch& patch : sheet_.patches) write_patch(patch);
     write_lines(sheet_.outlines, kStrainOutline, "[] 0 d\n");
-    write_lines(sheet_.added, kStrainCut, "[6 3] 0 d\n");
+    write_lines(
+        sheet_.added, kStrainCut,
+        "[" + strain_number(6 * sheet_.unit) + " " + strain_number(3 * sheet_.unit) + "] 0 d\n");
     write_lines(sheet_.worst, 2 * kStrainOutline, "[] 0 d\n");
     for (const SheetText& text : sheet_.texts) {
       const double before = text.anchor == TextAnchor::middle ? helvetica_width(text.text) / 2 : 0;
@@ -129,7 +134,7 @@ class StrainPdf {
 
   void write_lines(const std::vector<SheetLine>& lines, double width, const std::string& dashes) {
     set_colours({0, 0, 0});
-    out_ += strain_number(width) + " w " + dashes;
+    out_ += strain_number(sheet_.unit * width) + " w " + dashes;
     for (const SheetLine& line : lines) {
       for (std::size_t i = 0; i < line.points.size(); ++i)
         out_ += point(line.points[i]) + (i == 0 ? "m\n" : "l\n");

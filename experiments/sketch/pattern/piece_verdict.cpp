@@ -33,9 +33,9 @@ FlatPiece flat_piece(const PatternPiece& piece, const Eigen::MatrixX3d& surface,
                      const std::string& label) {
   FlatPiece flat{piece.points, Eigen::MatrixX3d(piece.points.rows(), 3), piece.triangles};
   if (std::ssize(piece.surface_vertex) != piece.points.rows()) {
-    throw Error("has surface vertices for " + std::to_string(piece.surface_vertex.size()) +
-                    " points",
-                label, std::to_string(piece.points.rows()));
+    throw Error(
+        "has surface vertices for " + std::to_string(piece.surface_vertex.size()) + " points",
+        label, std::to_string(piece.points.rows()));
   }
   for (Eigen::Index i = 0; i < flat.x.rows(); ++i) {
     const int v = piece.surface_vertex[i];
@@ -166,7 +166,9 @@ std::string short_verdict(const PieceVerdict& verdict) {
 }
 
 std::string verdict_line(const Pattern& pattern, int piece, const PieceVerdict& verdict) {
-  std::string line = piece_label(pattern, piece) + ": ";
+  std::string line = "piece " + std::to_string(piece + 1) + " of " +
+                     std::to_string(pattern.pieces.size()) + " '" + pattern.pieces[piece].name +
+                     "': ";
   if (!verdict.refused.empty()) line += "REFUSED, " + verdict.refused + "; ";
   line += short_verdict(verdict) + "; worst " + percent(verdict.worst, 1) + " near " +
           verdict.nearest + ", in the pattern at x " + whole_millimetres(verdict.worst_flat.x()) +

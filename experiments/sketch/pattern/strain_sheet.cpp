@@ -12,13 +12,16 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr int kStrainLevels = 12;       ///< of colour, to either side of none
-constexpr double kStrainMargin = 15;    ///< around everything (mm)
-constexpr double kStrainText = 4;       ///< height (mm)
-constexpr double kStrainFooter = 38;    ///< title and colour bar (mm)
-constexpr double kBarBox = 8;           ///< width of a level in the bar (mm)
-constexpr double kWorstRadius = 3;      ///< of the mark of the worst place (mm)
-constexpr double kLeastSheet = 240;     ///< width, for title and bar (mm)
+constexpr int kStrainLevels = 12;     ///< of colour, to either side of none
+constexpr double kStrainMargin = 15;  ///< around everything (mm)
+constexpr double kStrainText = 4;     ///< height (mm)
+constexpr double kStrainFooter = 38;  ///< title and colour bar (mm)
+constexpr double kBarHeight = 6;      ///< of the bar (mm)
+constexpr double kBarBox = 8;         ///< width of a level in the bar (mm)
+constexpr double kWorstRadius = 3;    ///< of the mark of the worst place (mm)
+constexpr double kLeastSheet = 240;   ///< width, for title and bar (mm)
+constexpr double kCommonSheet = 600;  ///< size from which texts and marks grow (mm)
+constexpr double kMostGrown = 3;
 
 int level_of(double strain) {
   const double share = std::clamp(strain / kColouredStrain, -1.0, 1.0);
@@ -40,9 +43,11 @@ class StrainDrawing {
       for (Eigen::Index i = 0; i < piece.points.rows(); ++i)
         box_.extend(Eigen::Vector2d(1000 * piece.points.row(i).transpose()));
     }
-    shift_ = Eigen::Vector2d(kStrainMargin, kStrainMargin + kStrainFooter) - box_.min();
-    sheet_.size = box_.sizes() + Eigen::Vector2d(2 * kStrainMargin, 2 * kStrainMargin + kStrainFooter);
-    sheet_.size.x() = std::max(sheet_.size.x(), kLeastSheet);
+    unit_ = sheet_.unit = std::clamp(box_.sizes().maxCoeff() / kCommonSheet, 1.0, kMostGrown);
+    const double margin = unit_ * kStrainMargin, below = unit_ * (kStrainMargin + kStrainFooter);
+    shift_ = Eigen::Vector2d(margin, below) - box_.min();
+    sheet_.size = box_.sizes() + Eigen::Vector2d(2 * margin, margin + below);
+    sheet_.size.x() = std::max(sheet_.size.x(), unit_ * kLeastSheet);
   }
 
   StrainSheet draw() {
@@ -95,8 +100,8 @@ class StrainDrawing {
     const PatternPiece& flat = pattern_.pieces[piece];
     for (Eigen::Index i = 0; i < flat.points.rows(); ++i)
       box.extend(on_sheet(flat.points.row(i).transpose()));
-    const std::string name = "'" + flat.name + "'" +
-                             (verdict.refused.empty() ? "" : " REFUSED: " + verdict.refused);
+    const std::string name =
+        "'" + flat.name + "'" + (verdict.refused.empty() ? "" : " REFUSED: " + verdict.refused);
     const Eigen::Vector2d below(box.center().x(), box.min().y());
     write_below(below, 1, box.sizes().x(), strain_text(name));
     write_below(below, 2.4, box.sizes().x(), strain_text(short_verdict(verdict)));
@@ -108,9 +113,9 @@ class StrainDrawing {
 
   void write_below(const Eigen::Vector2d& below, double lines, double room,
                    const std::u32string& text) {
-    const double fits = (room + kStrainMargin) / helvetica_width(text);
-    const double height = std::clamp(fits, 0.5 * kStrainText, kStrainText);
-    sheet_.texts.push_back({below - Eigen::Vector2d(0, lines * kStrainText), height, text});
+    const double fits = (room + unit_ * kStrainMargin) / helvetica_width(text);
+    const double most = unit_ * kStrainText, height = std::clamp(fits, 0.5 * kStrainText, most);
+    sheet_.texts.push_back({below - Eigen::Vector2d(0, lines * most), height, text});
   }
 
   void mark(const Eigen::Vector2d& at) {
@@ -118,41 +123,40 @@ class StrainDrawing {
     SheetLine circle{SheetLayer::text, true, {}, 0};
     for (int i = 0; i < kSides; ++i) {
       const double angle = kFullTurn * i / kSides;
-      circle.points.emplace_back(at + kWorstRadius *
+      circle.points.emplace_back(at + unit_ * kWorstRadius *
                                           Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
     sheet_.worst.push_back(std::move(circle));
     for (const Eigen::Vector2d& d : {Eigen::Vector2d(1, 1), Eigen::Vector2d(1, -1)}) {
-      const Eigen::Vector2d half = 0.7 * kWorstRadius * d;
+      const Eigen::Vector2d half = 0.7 * unit_ * kWorstRadius * d;
       sheet_.worst.push_back({SheetLayer::text, false, {at - half, at + half}});
     }
   }
 
   void draw_bar() {
-    const Eigen::Vector2d corner(kStrainMargin, kStrainMargin);
+    const auto at = [&](double x, double y) {
+      return Eigen::Vector2d(unit_ * (kStrainMargin + x), unit_ * (kStrainMargin + y));
+    };
     for (int level = -kStrainLevels; level <= kStrainLevels; ++level) {
-      const Eigen::Vector2d low = corner + Eigen::Vector2d(kBarBox * (level + kStrainLevels), 0);
-      const Eigen::Vector2d high = low + Eigen::Vector2d(kBarBox, 6);
-      const Eigen::Vector2d right(high.x(), low.y()), left(low.x(), high.y());
-      patches_[level].triangles.push_back({low, right, high});
-      patches_[level].triangles.push_back({low, high, left});
+      const double left = kBarBox * (level + kStrainLevels), right = left + kBarBox;
+      patches_[level].triangles.push_back({at(left, 0), at(right, 0), at(right, kBarHeight)});
+      patches_[level].triangles.push_back(
+          {at(left, 0), at(right, kBarHeight), at(left, kBarHeight)});
       if (level % (kStrainLevels / 2) != 0) continue;
       const auto per_cent = std::lround(100 * strain_of_level(level));
-      sheet_.texts.push_back({low + Eigen::Vector2d(kBarBox / 2, -4), 3.5,
-                              strain_text((per_cent > 0 ? "+" : "") + std::to_string(per_cent) +
-                                          " %")});
+      const std::string text = (per_cent > 0 ? "+" : "") + std::to_string(per_cent) + " %";
+      sheet_.texts.push_back({at((left + right) / 2, -4), 3.5 * unit_, strain_text(text)});
     }
-    const Eigen::Vector2d size((2 * kStrainLevels + 1) * kBarBox, 6);
+    const double width = (2 * kStrainLevels + 1) * kBarBox;
     sheet_.outlines.push_back({SheetLayer::sew,
                                true,
-                               {corner, corner + Eigen::Vector2d(size.x(), 0), corner + size,
-                                corner + Eigen::Vector2d(0, size.y())}});
-    sheet_.texts.push_back({corner + Eigen::Vector2d(0, 11), 3.5,
+                               {at(0, 0), at(width, 0), at(width, kBarHeight), at(0, kBarHeight)}});
+    sheet_.texts.push_back({at(0, 11), 3.5 * unit_,
                             U"blue: the surface is shorter than the pattern; green: lengths are "
                             U"kept; red: longer. Circles: worst place. Dashed: suggested cuts.",
                             TextAnchor::left});
-    sheet_.texts.push_back({corner + Eigen::Vector2d(0, 18), 5,
-                            U"Strain of the pieces, not to cut by", TextAnchor::left});
+    sheet_.texts.push_back(
+        {at(0, 18), 5 * unit_, U"Strain of the pieces, not to cut by", TextAnchor::left});
   }
 
   const Pattern& pattern_;
@@ -160,6 +164,7 @@ class StrainDrawing {
   const std::vector<PieceVerdict>& verdicts_;
   Eigen::AlignedBox2d box_;
   Eigen::Vector2d shift_{0, 0};
+  double unit_ = 1;
   std::map<int, StrainPatch> patches_;
   StrainSheet sheet_;
 };

@@ -13,6 +13,8 @@
 #include "core/geometry/triangle_tree.h"
 #include "models/sketch/surface/shortest_cut.h"
 #include "solvers/sketch/pattern/conformal_scale.h"
+#include "solvers/sketch/pattern/level_lines.h"
+#include "solvers/sketch/pattern/slope_parts.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -21,6 +23,10 @@ constexpr std::array<int, 6> kStars{1, 2, 3, 4, 6, 8};
 constexpr double kMostDensity = 20;    ///< of |defect|, over its mean
 constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high counts as the same place
 constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
+
+constexpr double kFairCut = 2;       ///< scale at which cuts are fair (edges)
+constexpr double kShortestLine = 8;  ///< of a cut around a part (edges)
+constexpr int kMostSlopeParts = 5;   ///< of constant slope
 
 /// Bands between two values of the scale, over its extreme.
 constexpr std::array<std::array<double, 2>, 3> kBands{{{0.05, 0.4}, {0.4, 0.75}, {0.75, 0.99}}};
@@ -123,7 +129,7 @@ class CandidateFinder {
         edge_(mean_edge(piece.mesh)),
         scale_(conformal_scale(piece.mesh)),
         price_(crease_price(piece.mesh, options.crease)),
-        paths_(piece.mesh, price_) {}
+        paths_(piece.mesh, Eigen::VectorXd::Ones(piece.mesh.triangle_count())) {}
 
   std::vector<std::vector<SurfacePath>> find() {
     const double largest = scale_.cwiseAbs().maxCoeff();
@@ -135,6 +141,8 @@ class CandidateFinder {
       for (const auto& band : kBands) add_loops(height, band[0] * top, band[1] * top);
     }
     add_parallel_loops();
+    add_parts();
+    add_planes();
     return std::move(found_);
   }
 
@@ -145,12 +153,15 @@ class CandidateFinder {
   void add_stars(const Eigen::VectorXd& height);
   void add_loops(const Eigen::VectorXd& value, double low, double high);
   void add_parallel_loops();
+  void add_parts();
+  void add_planes();
   [[nodiscard]] SurfacePath shortest_loop(const CutPiece& ring, const Eigen::VectorXd& price) const;
   [[nodiscard]] int border_start(int from, bool on_plane) const;
   [[nodiscard]] std::vector<int> dividing(int start, int count) const;
   [[nodiscard]] SurfacePath to_vertex(int from, int to) const;
   [[nodiscard]] std::vector<SurfacePath> star(int from, int start, int count) const;
   void add(std::vector<SurfacePath> paths);
+  void add_level(const Eigen::VectorXd& value);
 
   const CutPiece& piece_;
   const TriMesh& mesh_;
@@ -246,8 +257,53 @@ std::vector<SurfacePath> CandidateFinder::star(int from, int start, int count) c
   return paths;
 }
 
+/// A cut that parts the piece in two is made fair first.
 void CandidateFinder::add(std::vector<SurfacePath> paths) {
-  if (!paths.empty()) found_.push_back(std::move(paths));
+  if (paths.empty()) return;
+  std::vector<SurfacePath> fair = faired_cut(mesh_, paths, kFairCut * edge_);
+  found_.push_back(fair.empty() ? std::move(paths) : std::move(fair));
+}
+
+/// Around every part of constant slope, of several divisions: all its borders together, and the
+/// longest alone.
+void CandidateFinder::add_parts() {
+  for (const std::vector<int>& division : slope_parts(mesh_, kMostSlopeParts)) {
+    const int parts = 1 + *std::max_element(division.begin(), division.end());
+    for (int p = 0; p < (parts == 2 ? 1 : parts); ++p) {
+      Eigen::VectorXd value = Eigen::VectorXd::Zero(mesh_.vertex_count()), count = value;
+      for (int t = 0; t < mesh_.triangle_count(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+          value(mesh_.F(t, k)) += division[t] == p ? 1 : -1;
+          count(mesh_.F(t, k)) += 1;
+        }
+      }
+      const Eigen::VectorXd mean = value.cwiseQuotient(count.cwiseMax(1.0));
+      add_level(smoothed_over(mesh_, mean, kFairCut * edge_));
+    }
+  }
+}
+
+/// Along the planes through the middle of the piece's box.
+void CandidateFinder::add_planes() {
+  const Eigen::RowVector3d middle =
+      (mesh_.V.colwise().minCoeff() + mesh_.V.colwise().maxCoeff()) / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool mirror = options_.mirror && options_.mirror->axis == axis;
+    const double at = mirror ? options_.mirror->at : middle[axis];
+    add_level(mesh_.V.col(axis).array() - at);
+  }
+}
+
+void CandidateFinder::add_level(const Eigen::VectorXd& value) {
+  std::vector<SurfacePath> lines = level_lines(mesh_, value, kShortestLine * edge_);
+  if (lines.empty()) return;
+  if (lines.size() > 1) {
+    found_.push_back({*std::max_element(lines.begin(), lines.end(),
+                                        [&](const SurfacePath& a, const SurfacePath& b) {
+                                          return length(a, mesh_.V) < length(b, mesh_.V);
+                                        })});
+  }
+  found_.push_back(std::move(lines));
 }
 
 void CandidateFinder::add_stars(const Eigen::VectorXd& height) {

@@ -34,9 +34,13 @@ struct CutCandidateOptions {
 /// stars of 1, 2, 3, 4, 6 and 8 paths to points that divide the border evenly; a single one goes to
 /// the nearest border as well. Closed cuts are each the shortest one that parts the two sides of a
 /// ring: between two values of the scale, around a place, and between two distances from the
-/// longest border, where most curvature lies (a crease parallel to a hem). Paths are weighted:
+/// longest border, where most curvature lies (a crease parallel to a hem). These are weighted:
 /// cheaper along lines of concentrated angle defect, by 1 / (1 + crease d), d the density of
-/// |defect| over its mean.
+/// |defect| over its mean; paths of stars are straight on the surface.
+///
+/// Further cuts go around parts of constant slope (`slope_parts`), which can be laid flat by
+/// themselves, and along the planes through the middle of the piece's box. What parts the piece in
+/// two is a fair line (`level_lines.h`).
 ///
 /// With a mirror plane a place near the plane is moved to it and its star begins there; the star of
 /// any other place comes together with its mirror image.

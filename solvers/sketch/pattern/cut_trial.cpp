@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -123,16 +124,15 @@ std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePat
   int next_seam = 0;
   for (const SeamEdge& e : panel.inner) next_seam = std::max(next_seam, e.seam + 1);
   if (!paths.empty() && !surface.cut(paths, next_seam)) return {};
-  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams)) {
-    const double area = triangle_areas(part.mesh.V, part.mesh.F).sum();
-    trial.least_part = trial.parts == 0 ? area : std::min(trial.least_part, area);
-    ++trial.parts;
-  }
+  trial.parts = static_cast<int>(cut_surface(surface.mesh, surface.seams).size());
   const std::optional<Openings> openings = open_rings(surface, next_seam + 1, options);
   if (!openings) return {};
   trial.opening_length = openings->lines.length;
-  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams))
+  trial.least_part = std::numeric_limits<double>::infinity();
+  for (const CutPiece& part : cut_surface(surface.mesh, surface.seams)) {
     trial.flat.add(measured(part.mesh, options));
+    trial.least_part = std::min(trial.least_part, triangle_areas(part.mesh.V, part.mesh.F).sum());
+  }
   return trial;
 }
 

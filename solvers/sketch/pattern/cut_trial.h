@@ -50,7 +50,7 @@ struct CutTrial {
   CutLines lines;             ///< the same in space
   double opening_length = 0;  ///< of what opens rings that are left (m)
   int parts = 0;
-  double least_part = 0;  ///< area of the smallest of them (m^2)
+  double least_part = 0;  ///< area of the smallest piece, all cuts made (m^2)
   FlatMeasure flat;
 };
 

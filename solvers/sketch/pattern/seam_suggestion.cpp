@@ -4,16 +4,19 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "core/connectivity.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "models/sketch/surface/shortest_cut.h"
 #include "solvers/sketch/pattern/cut_candidates.h"
 #include "solvers/sketch/pattern/cut_trial.h"
+#include "solvers/sketch/pattern/fair_seams.h"
 #include "solvers/sketch/pattern/random_cuts.h"
 
 namespace geoprior::sketch {
@@ -25,8 +28,7 @@ constexpr double kTrialTolerance = 1e-6;
 /// Length of all cuts of a suggestion: shorter ones are not worth sewing, longer ones are not of
 /// anything that is sewn (m). Ours.
 constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
-/// Least area of what a cut parts off, over that of its piece: scraps are no pieces. Ours.
-constexpr double kLeastPart = 0.05;
+constexpr double kLineWidth = 4;  ///< scale at which the lines of suggestions are fair (mean edges)
 
 class GreedySuggester {
  public:
@@ -39,6 +41,11 @@ class GreedySuggester {
     trial_.pattern.flatten.tolerance = std::max(pattern.flatten.tolerance, kTrialTolerance);
     trial_.tolerance = options.tolerance;
     if (options.symmetric) trial_.mirror = mirror_axis(surface);
+    whole_ = triangle_areas(surface.V, surface.F).sum();
+    const EdgeConnectivity edges(surface.F);
+    for (const Edge& e : edges.edges())
+      line_width_ += kLineWidth * (surface.V.row(e[0]) - surface.V.row(e[1])).norm() /
+                     static_cast<double>(edges.edge_count());
   }
 
   std::vector<SuggestedSeam> suggest() {
@@ -59,19 +66,24 @@ class GreedySuggester {
 
   [[nodiscard]] std::vector<CutTrial> measure(const std::vector<Panel>& pieces) const;
   std::optional<SuggestedSeam> suggest_one();
-  [[nodiscard]] std::optional<Scored> best_cut(const Panel& piece, const CutTrial& before) const;
+  [[nodiscard]] std::vector<Scored> best_cuts(const Panel& piece, const CutTrial& before) const;
   [[nodiscard]] std::optional<Scored> score(const Panel& piece,
                                             const std::vector<SurfacePath>& paths,
                                             const CutTrial& before) const;
   [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const Panel& panel) const;
   [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<Panel>& pieces,
                                                         std::size_t piece) const;
-  void apply(SuggestedSeam& suggestion);
+  [[nodiscard]] SuggestedSeam suggestion_of(const std::vector<Panel>& pieces,
+                                            const std::vector<CutTrial>& measures, std::size_t p,
+                                            CutTrial best) const;
+  [[nodiscard]] bool apply(SuggestedSeam& suggestion);
 
   SeamSuggestionOptions options_;
   TrialOptions trial_;
   SeamedSurface work_;
   int next_seam_ = 0;
+  double whole_ = 0;       ///< area of the surface (m^2)
+  double line_width_ = 0;  ///< m
 };
 
 /// Every piece as it is.
@@ -128,7 +140,7 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece
     return {};  // a part that cannot be laid flat: no suggestion
   }
   if (!trial || (before.flat.sound && !trial->flat.sound)) return {};
-  if (trial->parts > 1 && trial->least_part < kLeastPart * trial->flat.area) return {};
+  if (trial->least_part < std::min(before.least_part, options_.min_part * whole_)) return {};
   const double added = trial->lines.length;
   if (added < kShortestSuggestion || added > kLongestSuggestion) return {};
   const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
@@ -137,25 +149,27 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece
   return Scored{std::move(*trial), removed - cost};
 }
 
-std::optional<GreedySuggester::Scored> GreedySuggester::best_cut(const Panel& piece,
-                                                                 const CutTrial& before) const {
+/// Those that ease the piece for what they cost, the best first.
+std::vector<GreedySuggester::Scored> GreedySuggester::best_cuts(const Panel& piece,
+                                                                const CutTrial& before) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
   parallel_blocks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) scored[i] = score(piece, all[i], before);
   });
-  std::optional<Scored>* best = nullptr;
+  std::vector<Scored> best;
   for (std::optional<Scored>& candidate : scored) {
-    if (candidate && candidate->score > 0 && (!best || candidate->score > (*best)->score))
-      best = &candidate;
+    if (candidate && candidate->score > 0) best.push_back(std::move(*candidate));
   }
-  if (!best) return {};
-  if (options_.rule == SuggestionRule::measured) return std::move(*best);
+  std::stable_sort(best.begin(), best.end(),
+                   [](const Scored& a, const Scored& b) { return a.score > b.score; });
+  if (best.empty() || options_.rule == SuggestionRule::measured) return best;
   const std::vector<SurfacePath> by_lot =
-      random_cuts(piece.piece.mesh, (*best)->trial.lines.length, options_.seed);
+      random_cuts(piece.piece.mesh, best.front().trial.lines.length, options_.seed);
   std::optional<CutTrial> trial = try_cut(piece, by_lot, trial_);
-  if (!trial) return {};
-  return Scored{std::move(*trial), 0};
+  best.clear();
+  if (trial) best.push_back({std::move(*trial), 0});
+  return best;
 }
 
 /// The other piece that lies where the image of this one is, with about its area.
@@ -186,15 +200,59 @@ std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel
   return {};
 }
 
-/// Makes a cut, which is in the numbers of the whole surface.
-void GreedySuggester::apply(SuggestedSeam& suggestion) {
-  if (!work_.cut(suggestion.cut, next_seam_++))
-    throw Error("a cut of a piece cannot be made on the surface", "suggested seam");
-  SeamedSurface opened = work_;
-  if (std::optional<Openings> openings = open_rings(opened, next_seam_, trial_)) {
+/// Makes a cut, which is in the numbers of the whole surface, unless that leaves a crumb.
+bool GreedySuggester::apply(SuggestedSeam& suggestion) {
+  const auto least_piece = [](const SeamedSurface& surface) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const CutPiece& piece : cut_surface(surface.mesh, surface.seams))
+      least = std::min(least, triangle_areas(piece.mesh.V, piece.mesh.F).sum());
+    return least;
+  };
+  SeamedSurface cut = work_;
+  if (!cut.cut(suggestion.cut, next_seam_)) return false;
+  SeamedSurface opened = cut;
+  if (std::optional<Openings> openings = open_rings(opened, next_seam_ + 1, trial_)) {
     suggestion.openings = std::move(openings->cuts);
-    suggestion.opening_lines = std::move(openings->lines);
+    suggestion.opening_lines = faired_lines(openings->lines, line_width_);
   }
+  const bool crumbs =
+      least_piece(opened) < std::min(least_piece(work_), options_.min_part * whole_);
+  if (crumbs && options_.rule == SuggestionRule::measured) return false;
+  suggestion.lines = faired_lines(suggestion.lines, line_width_);
+  work_ = std::move(cut);
+  ++next_seam_;
+  return true;
+}
+
+/// The cut of a piece, and of the piece that is its mirror image, with what they come to.
+SuggestedSeam GreedySuggester::suggestion_of(const std::vector<Panel>& pieces,
+                                             const std::vector<CutTrial>& measures, std::size_t p,
+                                             CutTrial best) const {
+  FlatMeasure whole;
+  for (const CutTrial& m : measures) whole.add(m.flat);
+  SuggestedSeam suggestion;
+  FlatMeasure now = whole;
+  const auto take = [&](std::size_t piece, const CutTrial& trial) {
+    now.within += trial.flat.within - measures[piece].flat.within;
+    now.strain += trial.flat.strain - measures[piece].flat.strain;
+    suggestion.lines.append(trial.lines);
+    for (const SurfacePath& path : trial.cut)
+      suggestion.cut.push_back(renumbered(path, pieces[piece].piece.surface_vertex));
+  };
+  suggestion.is_dart = best.parts == 1;
+  if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
+    const std::vector<SurfacePath> cut =
+        mirrored_cut(pieces[*image].piece, best.lines.points, {options_.crease, trial_.mirror});
+    std::optional<Scored> mirrored;
+    if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
+    if (mirrored) take(*image, mirrored->trial);
+  }
+  take(p, best);
+  suggestion.share_before = whole.within / whole.area;
+  suggestion.strain_before = whole.strain / whole.area;
+  suggestion.share_after = now.within / whole.area;
+  suggestion.strain_after = now.strain / whole.area;
+  return suggestion;
 }
 
 std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
@@ -211,32 +269,10 @@ std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
   for (const std::size_t p : order) {
     const FlatMeasure& then = measures[p].flat;
     if (!(then.within < then.area)) continue;
-    std::optional<Scored> best = best_cut(pieces[p], measures[p]);
-    if (!best) continue;
-    SuggestedSeam suggestion;
-    FlatMeasure now = whole;
-    const auto take = [&](std::size_t piece, CutTrial trial) {
-      now.within += trial.flat.within - measures[piece].flat.within;
-      now.strain += trial.flat.strain - measures[piece].flat.strain;
-      suggestion.lines.append(trial.lines);
-      for (const SurfacePath& path : trial.cut)
-        suggestion.cut.push_back(renumbered(path, pieces[piece].piece.surface_vertex));
-    };
-    suggestion.is_dart = best->trial.parts == 1;
-    if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
-      const std::vector<SurfacePath> cut = mirrored_cut(
-          pieces[*image].piece, best->trial.lines.points, {options_.crease, trial_.mirror});
-      std::optional<Scored> mirrored;
-      if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
-      if (mirrored) take(*image, std::move(mirrored->trial));
+    for (Scored& best : best_cuts(pieces[p], measures[p])) {
+      SuggestedSeam suggestion = suggestion_of(pieces, measures, p, std::move(best.trial));
+      if (apply(suggestion)) return suggestion;
     }
-    take(p, std::move(best->trial));
-    suggestion.share_before = whole.within / whole.area;
-    suggestion.strain_before = whole.strain / whole.area;
-    suggestion.share_after = now.within / whole.area;
-    suggestion.strain_after = now.strain / whole.area;
-    apply(suggestion);
-    return suggestion;
   }
   return {};
 }
@@ -259,6 +295,10 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
           {.doc = "how much cheaper cuts are along lines of concentrated curvature",
            .min = 0,
            .max = 100});
+  v.value("min_part", o.min_part,
+          {.doc = "least area of a piece, over that of the surface, that suggestions may leave",
+           .min = 0,
+           .max = 1});
   v.value("symmetric", o.symmetric, {.doc = "whether mirrored surfaces get mirrored suggestions"});
   describe_choice(v, "rule", o.rule, kRules, {.doc = "where suggested cuts lie"});
   v.value("seed", o.seed, {.doc = "seed of cuts by chance", .min = 0});

@@ -22,6 +22,7 @@ struct SeamSuggestionOptions {
   int count = 3;
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
   double crease = 0.3;
+  double min_part = 0.02;
   bool symmetric = true;
   SuggestionRule rule = SuggestionRule::measured;
   int seed = 0;
@@ -40,7 +41,8 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 /// surface is its own mirror image and the piece's image is another piece, that one is cut alike,
 /// in the same suggestion. Then all begins anew on the cut surface, until the share of the area
 /// within the tolerance is reached. Candidates whose parts overlap themselves in the plane are left
-/// out when the piece did not.
+/// out when the piece did not, and those that leave a piece smaller than `min_part`, all cuts and
+/// openings made. The lines of suggestions are fair (`faired_lines`).
 ///
 /// It cannot: move a seam that is there, take cuts back, look two cuts ahead, or know what a tailor
 /// likes. Work is that of flattening a piece some thirty times a suggestion.

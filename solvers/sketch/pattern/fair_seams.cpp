@@ -1,0 +1,257 @@
+#include "solvers/sketch/pattern/fair_seams.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/connectivity.h"
+#include "core/geometry/surface_point.h"
+#include "core/geometry/topology.h"
+#include "core/geometry/triangle_tree.h"
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr int kSamplesOfWidth = 4;
+constexpr int kMostSamples = 600;  ///< of a line
+constexpr double kFairWidth = 4;   ///< of seams, in mean edges of the surface
+constexpr int kFollowRings = 2;    ///< about a seam, whose vertices follow it
+constexpr int kFollowPasses = 8;
+constexpr double kLeastTurned = 0.3;  ///< cosine between a triangle's normal before and after
+
+bool is_closed(const Eigen::MatrixX3d& line) {
+  return line.rows() > 3 && line.row(0) == line.row(line.rows() - 1);
+}
+
+std::vector<double> arc_lengths(const Eigen::MatrixX3d& line) {
+  std::vector<double> along{0};
+  for (Eigen::Index i = 1; i < line.rows(); ++i)
+    along.push_back(along.back() + (line.row(i) - line.row(i - 1)).norm());
+  return along;
+}
+
+/// Rows of a value at places along a line.
+Eigen::MatrixX3d at_lengths(const Eigen::MatrixX3d& rows, const std::vector<double>& along,
+                            const std::vector<double>& places) {
+  Eigen::MatrixX3d result(places.size(), 3);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    while (k + 2 < along.size() && along[k + 1] < places[i]) ++k;
+    const double step = along[k + 1] - along[k];
+    const double share = step > 0 ? std::clamp((places[i] - along[k]) / step, 0.0, 1.0) : 0;
+    result.row(i) = (1 - share) * rows.row(k) + share * rows.row(k + 1);
+  }
+  return result;
+}
+
+std::vector<double> even_places(double length, double width) {
+  const auto steps = std::clamp(static_cast<int>(std::ceil(kSamplesOfWidth * length / width)),
+                                kSamplesOfWidth, kMostSamples);
+  std::vector<double> places;
+  for (int i = 0; i <= steps; ++i) places.push_back(length * i / steps);
+  return places;
+}
+
+/// Chains of seam edges between vertices where they end, branch or must stay.
+std::vector<std::vector<int>> seam_chains(std::span<const SeamEdge> seams,
+                                          const std::vector<char>& stays) {
+  std::vector<std::vector<int>> beside(stays.size());
+  for (const SeamEdge& e : seams) {
+    beside[e.edge[0]].push_back(e.edge[1]);
+    beside[e.edge[1]].push_back(e.edge[0]);
+  }
+  std::set<Edge> done;
+  std::vector<std::vector<int>> chains;
+  const auto follow = [&](int from, int to) {
+    std::vector<int> chain{from};
+    while (done.insert(undirected(from, to)).second) {
+      chain.push_back(to);
+      if (stays[to] || beside[to].size() != 2) break;
+      const int next = beside[to][0] == from ? beside[to][1] : beside[to][0];
+      from = to;
+      to = next;
+    }
+    if (chain.size() > 2) chains.push_back(std::move(chain));
+  };
+  for (const bool from_end : {true, false}) {
+    for (int v = 0; v < std::ssize(beside); ++v) {
+      if (beside[v].empty() || (stays[v] || beside[v].size() != 2) != from_end) continue;
+      for (const int w : beside[v]) follow(v, w);
+    }
+  }
+  return chains;
+}
+
+class SeamFairing {
+ public:
+  SeamFairing(const TriMesh& surface, std::span<const SeamEdge> seams,
+              std::span<const SeamEdge> kept)
+      : surface_(surface), tree_(surface), X_(surface.V), stays_(surface.vertex_count(), 0) {
+    const std::vector<bool> border = boundary_vertices(surface.F, surface.vertex_count());
+    for (int v = 0; v < surface.vertex_count(); ++v) stays_[v] = border[v] ? 1 : 0;
+    for (const SeamEdge& e : kept) stays_[e.edge[0]] = stays_[e.edge[1]] = 1;
+    chains_ = seam_chains(seams, stays_);
+    double sum = 0;
+    const EdgeConnectivity edges(surface.F);
+    for (const Edge& e : edges.edges()) sum += (X_.row(e[0]) - X_.row(e[1])).norm();
+    width_ = kFairWidth * sum / std::max(1, edges.edge_count());
+  }
+
+  Eigen::MatrixX3d fair() {
+    for (const std::vector<int>& chain : chains_) slide(chain);
+    follow();
+    undo_turned();
+    return std::move(X_);
+  }
+
+ private:
+  [[nodiscard]] Eigen::RowVector3d on_surface(const Eigen::RowVector3d& x) const {
+    const SurfacePoint at = tree_.nearest(x.transpose()).point;
+    return position_of(at, surface_.V, surface_.F).transpose();
+  }
+
+  void slide(const std::vector<int>& chain) {
+    Eigen::MatrixX3d line(chain.size(), 3);
+    for (std::size_t i = 0; i < chain.size(); ++i) line.row(i) = surface_.V.row(chain[i]);
+    const Eigen::MatrixX3d fair = faired_line(line, width_);
+    const std::vector<double> along = arc_lengths(line), on_fair = arc_lengths(fair);
+    std::vector<double> places;
+    for (const double s : along) places.push_back(s / along.back() * on_fair.back());
+    const Eigen::MatrixX3d moved = at_lengths(fair, on_fair, places);
+    const bool closed = chain.front() == chain.back();
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const bool is_end = i == 0 || i + 1 == chain.size();
+      if (stays_[chain[i]] || (is_end && !closed)) continue;
+      X_.row(chain[i]) = on_surface(moved.row(i));
+    }
+    for (const int v : chain) stays_[v] = 1;
+  }
+
+  /// Vertices about the seams, which have their places now, to the middle of their neighbours.
+  void follow() {
+    const VertexGraph rings = one_rings(surface_.F, surface_.vertex_count());
+    std::vector<int> near, front;
+    std::vector<char> taken(surface_.vertex_count(), 0);
+    for (const std::vector<int>& chain : chains_)
+      front.insert(front.end(), chain.begin(), chain.end());
+    for (const int v : front) taken[v] = 1;
+    for (int ring = 0; ring < kFollowRings; ++ring) {
+      std::vector<int> next;
+      for (const int v : front) {
+        for (const int w : rings.of(v)) {
+          if (taken[w]) continue;
+          taken[w] = 1;
+          next.push_back(w);
+        }
+      }
+      near.insert(near.end(), next.begin(), next.end());
+      front = std::move(next);
+    }
+    for (int pass = 0; pass < kFollowPasses; ++pass) {
+      for (const int v : near) {
+        if (stays_[v]) continue;
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+        int count = 0;
+        for (const int w : rings.of(v)) {
+          sum += X_.row(w);
+          ++count;
+        }
+        X_.row(v) = on_surface((X_.row(v) + sum / count) / 2);
+      }
+    }
+  }
+
+  void undo_turned() {
+    const Eigen::MatrixX3d before = triangle_normals(surface_);
+    const Eigen::VectorXd areas = triangle_areas(surface_.V, surface_.F);
+    for (bool changed = true; changed;) {
+      changed = false;
+      const TriMesh now{X_, surface_.F};
+      const Eigen::MatrixX3d normals = triangle_normals(now);
+      const Eigen::VectorXd areas_now = triangle_areas(now.V, now.F);
+      for (int t = 0; t < now.triangle_count(); ++t) {
+        if (normals.row(t).dot(before.row(t)) > kLeastTurned &&
+            areas_now(t) > 0.1 * std::min(areas(t), areas.mean()))
+          continue;
+        for (int k = 0; k < 3; ++k) {
+          const int v = surface_.F(t, k);
+          changed = changed || X_.row(v) != surface_.V.row(v);
+          X_.row(v) = surface_.V.row(v);
+        }
+      }
+    }
+  }
+
+  const TriMesh& surface_;
+  TriangleTree tree_;
+  Eigen::MatrixX3d X_;
+  std::vector<char> stays_;
+  std::vector<std::vector<int>> chains_;
+  double width_ = 0;
+};
+
+}  // namespace
+
+Eigen::MatrixX3d faired_line(const Eigen::MatrixX3d& line, double width) {
+  const std::vector<double> along = arc_lengths(line);
+  if (line.rows() < 3 || !(along.back() > 0)) return line;
+  const bool closed = is_closed(line);
+  Eigen::MatrixX3d p = at_lengths(line, along, even_places(along.back(), width));
+  const auto n = static_cast<int>(p.rows()) - (closed ? 1 : 0);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n);
+  const double weight = std::pow(kSamplesOfWidth, 4);
+  for (int i = closed ? 0 : 1; i < (closed ? n : n - 1); ++i) {
+    const int a = (i + n - 1) % n, b = (i + 1) % n;
+    const std::array<std::pair<int, double>, 3> row{{{a, 1}, {i, -2}, {b, 1}}};
+    for (const auto& [r, x] : row) {
+      for (const auto& [c, y] : row) A(r, c) += weight * x * y;
+    }
+  }
+  Eigen::MatrixX3d right = p.topRows(n);
+  if (!closed) {
+    // Ends stay: what their columns say goes to the other side.
+    for (const int end : {0, n - 1}) {
+      right -= A.col(end) * p.row(end);
+      A.col(end).setZero();
+      A.row(end).setZero();
+      A(end, end) = 1;
+    }
+    right.row(0) = p.row(0);
+    right.row(n - 1) = p.row(n - 1);
+  }
+  p.topRows(n) = Eigen::LDLT<Eigen::MatrixXd>(A).solve(right);
+  if (closed) p.row(n) = p.row(0);
+  return p;
+}
+
+CutLines faired_lines(const CutLines& lines, double width) {
+  CutLines faired;
+  for (std::size_t i = 0; i < lines.points.size(); ++i) {
+    const Eigen::MatrixX3d& line = lines.points[i];
+    const std::vector<double> along = arc_lengths(line);
+    if (line.rows() < 3 || !(along.back() > 0)) {
+      faired.points.push_back(line);
+      faired.normals.push_back(lines.normals[i]);
+    } else {
+      faired.points.push_back(faired_line(line, width));
+      faired.normals.push_back(at_lengths(lines.normals[i], along, even_places(along.back(), width))
+                                   .rowwise()
+                                   .normalized());
+    }
+    faired.length += arc_lengths(faired.points.back()).back();
+  }
+  return faired;
+}
+
+Eigen::MatrixX3d fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                            std::span<const SeamEdge> kept) {
+  return SeamFairing(surface, seams, kept).fair();
+}
+
+}  // namespace geoprior::sketch

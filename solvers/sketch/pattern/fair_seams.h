@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/mesh.h"
+#include "models/sketch/pattern/suggested_seam.h"
+#include "models/sketch/surface/cut_surface.h"
+
+namespace geoprior::sketch {
+
+/// A line made fair: of x(s) with the ends of the line, the least
+///
+///   sum |x_i - p_i|^2 + w^4 sum |x_(i-1) - 2 x_i + x_(i+1)|^2,
+///
+/// p evenly spaced on the line at a quarter of `width`, w = 4: what is shorter than `width` is
+/// smoothed. A closed line (its last row is its first) has no ends.
+/// @param line  rows along it (m)
+Eigen::MatrixX3d faired_line(const Eigen::MatrixX3d& line, double width);
+
+/// The lines with their normals, which turn evenly between those that they had.
+CutLines faired_lines(const CutLines& lines, double width);
+
+/// Slides the vertices of seams along a surface until seams are fair lines on it, and the vertices
+/// near to them after them. The surface keeps its shape to what its triangles can follow: all
+/// vertices lie on it as it was. Ends of seams, borders and places where seams meet stay; so does
+/// everything about a triangle that would turn over.
+///
+/// @param seams  edges that may slide
+/// @param kept   further edges whose vertices stay
+/// @return       n x 3, the vertices
+Eigen::MatrixX3d fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                            std::span<const SeamEdge> kept);
+
+}  // namespace geoprior::sketch
