@@ -169,22 +169,29 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   if (curves.points.rows() == 0) return measures;
   const auto& stroke = curves.require_array("stroke", NamedArray::On::points, 1).values;
   const auto& drawn_at = curves.require_array("drawn_at", NamedArray::On::points, 1).values;
-  Eigen::MatrixX3d real(curves.points.rows(), 3);
+  Eigen::MatrixX3d real(curves.points.rows(), 3), found(curves.points.rows(), 3);
+  Eigen::Index drawn = 0;
   double left = std::numeric_limits<double>::infinity(), right = -left;
-  for (Eigen::Index i = 0; i < real.rows(); ++i) {
+  for (Eigen::Index i = 0; i < curves.points.rows(); ++i) {
+    if (stroke(i) < 0) continue;  // guessed: it stands for no drawn point
     const auto& points = truth.truth[static_cast<std::size_t>(stroke(i))];
     const double at = std::floor(drawn_at(i));
     const Eigen::Vector3d a = points[static_cast<std::size_t>(at) % points.size()];
     const Eigen::Vector3d b = points[(static_cast<std::size_t>(at) + 1) % points.size()];
-    real.row(i) = (a + (drawn_at(i) - at) * (b - a)).transpose();
-    left = std::min(left, real(i, 0));
-    right = std::max(right, real(i, 0));
+    found.row(drawn) = curves.points.row(i);
+    real.row(drawn) = (a + (drawn_at(i) - at) * (b - a)).transpose();
+    left = std::min(left, real(drawn, 0));
+    right = std::max(right, real(drawn, 0));
+    ++drawn;
   }
-  const DepthError error = depth_error(curves.points, real, Eigen::Vector3d::UnitZ(), truth.height);
+  if (drawn == 0) return measures;
+  real.conservativeResize(drawn, 3);
+  found.conservativeResize(drawn, 3);
+  const DepthError error = depth_error(found, real, Eigen::Vector3d::UnitZ(), truth.height);
   measures.depth_rms = error.share;
   measures.depth_max = error.max / truth.height;
   measures.reprojection = error.in_plane_rms / (right - left);
-  measures.ruling_angle = ruling_angle(truth, frame, (real.col(2) - curves.points.col(2)).mean());
+  measures.ruling_angle = ruling_angle(truth, frame, (real.col(2) - found.col(2)).mean());
   add_panel_areas(truth, frame, measures);
   return measures;
 }

@@ -74,6 +74,15 @@ std::vector<Artifact> suggestion_files(const SketchInput& input,
                       suggested_drawing_svg(align_views(input.drawing, input.align), suggestions))};
 }
 
+/// What is guessed of hidden borders.
+std::vector<std::string> one_view_warnings(const SketchScene& scene,
+                                           const OneViewOptions& options) {
+  const View* view = scene.input.drawing.find(ViewKind::photo);
+  const std::string note = view == nullptr ? "" : one_view_note(*view, options);
+  if (note.empty()) return {};
+  return {note};
+}
+
 }  // namespace
 
 std::vector<MethodEntry> methods() {
@@ -90,12 +99,14 @@ std::vector<MethodEntry> methods() {
                   return suggestion_files(input, suggestions);
                 });
           }),
-      method_entry<S, OneViewOptions>(
-          "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
-          "thesis 2.1.3; Fondevilla et al. 2017",
-          [](const S& scene, const OneViewOptions& options, RunContext&) {
-            return make_one_view_process(scene.photo_input(), options);
-          }),
+      with_warnings<S, OneViewOptions>(
+          method_entry<S, OneViewOptions>(
+              "one-view", false, "depth of one annotated view by symmetry and rulings, mirrored",
+              "thesis 2.1.3; Fondevilla et al. 2017",
+              [](const S& scene, const OneViewOptions& options, RunContext&) {
+                return make_one_view_process(scene.photo_input(), options);
+              }),
+          one_view_warnings),
       method_entry<S, LayerOptions>(
           "layers", false, "rigid layers through drawn arcs, riveted, within their joints' range",
           "thesis 2.1.4, figure 2.14",
@@ -148,6 +159,9 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"residual_parallel", "m", "of parallel ends of patches"},
        {"condition", "1", "greatest over least eigenvalue of the normal matrix"},
        {"matches", "1", "dense symmetric correspondences"},
+       {"guessed_length", "1", "share of the length of borders in the view that is not drawn"},
+       {"guessed_area", "1",
+        "share of the surface, before it is mirrored, between borders that are not drawn"},
        {"arc_condition", "1", "greatest over least singular value of an arc's fit, the worst"},
        {"refine_iterations", "1", "steps of the non-linear refinement"},
        {"flow_energy", "1", "what a flow descends, as it defines it"}});

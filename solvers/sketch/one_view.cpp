@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/connectivity.h"
 #include "core/error.h"
@@ -23,20 +24,36 @@ constexpr double kPlaneReach = 0.1;
 /// Halves whose visible borders differ by less than this share are equally visible.
 constexpr double kEvenHalves = 0.02;
 
+constexpr std::array<std::string_view, 4> kCompletionNames{"all", "mirror", "parallel", "none"};
+
+/// 1 for the nodes that no drawn stroke passes through.
+std::vector<double> guessed_nodes(const OneViewResult& result) {
+  std::vector<double> guessed(result.net.points.size(), 1);
+  for (const SketchCurve& curve : result.net.curves) {
+    for (int i = 0; i < curve.size(); ++i)
+      if (result.completed.place(curve.stroke, curve.drawn_at[i]).stroke >= 0)
+        guessed[curve.nodes[i]] = 0;
+  }
+  return guessed;
+}
+
 /// Triangles of all patches over the nodes of the net, then inner vertices.
 class SurfaceBuilder {
  public:
-  explicit SurfaceBuilder(const OneViewResult& result) : result_(result) {
+  explicit SurfaceBuilder(const OneViewResult& result)
+      : result_(result), guessed_(guessed_nodes(result)) {
     for (Eigen::Index v = 0; v < result.depth.nodes.rows(); ++v)
       positions_.push_back(result.depth.nodes.row(v).transpose());
   }
   void add_strip(const RuledStrip& strip, int patch);
   void add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch);
   [[nodiscard]] TexturedSurface surface(const Eigen::AlignedBox2d& picture) const;
+  [[nodiscard]] double guessed_share() const;
 
  private:
   const OneViewResult& result_;
   std::vector<Eigen::Vector3d> positions_;
+  std::vector<double> guessed_;  ///< of each position: 1 on a guessed border, 0 on a drawn one
   std::vector<Eigen::Vector3i> triangles_;
   std::vector<int> patch_;
 };
@@ -51,6 +68,9 @@ void SurfaceBuilder::add_strip(const RuledStrip& strip, int patch) {
 
 void SurfaceBuilder::add_panel(const std::vector<int>& loop, const TriMesh& mesh, int patch) {
   std::vector<int> vertex = loop;
+  double mean = 0;
+  for (const int node : loop) mean += guessed_[node] / static_cast<double>(loop.size());
+  guessed_.resize(positions_.size() + mesh.V.rows() - loop.size(), mean);
   for (Eigen::Index v = loop.size(); v < mesh.V.rows(); ++v) {
     vertex.push_back(static_cast<int>(positions_.size()));
     positions_.push_back(mesh.V.row(v).transpose());
@@ -59,6 +79,18 @@ void SurfaceBuilder::add_panel(const std::vector<int>& loop, const TriMesh& mesh
     triangles_.emplace_back(vertex[mesh.F(t, 0)], vertex[mesh.F(t, 1)], vertex[mesh.F(t, 2)]);
     patch_.push_back(patch);
   }
+}
+
+/// A triangle counts by the share of its vertices that is guessed.
+double SurfaceBuilder::guessed_share() const {
+  double guessed = 0, whole = 0;
+  for (const Eigen::Vector3i& t : triangles_) {
+    const Eigen::Vector3d &a = positions_[t(0)], &b = positions_[t(1)], &c = positions_[t(2)];
+    const double area = (b - a).cross(c - a).norm() / 2;
+    whole += area;
+    guessed += area * (guessed_[t(0)] + guessed_[t(1)] + guessed_[t(2)]) / 3;
+  }
+  return whole > 0 ? guessed / whole : 0;
 }
 
 /// Only vertices that triangles use, in the order of the triangles.
@@ -202,6 +234,7 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneVi
     result.patches.push_back({panel.name, false, panel.flat, {}, {}});
   }
   result.surface = builder.surface(picture_box(view, result.net));
+  result.guessed_area = builder.guessed_share();
   orient_surface(result.surface.mesh);
 }
 
@@ -223,17 +256,23 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
                   "texture that lie so near to a panel's border are taken from farther inside",
            .min = 0,
            .max = 50});
+  describe_choice(v, "complete", o.complete, kCompletionNames,
+                  {.doc = "what hidden parts of borders are guessed from, in a drawing that marks "
+                          "none: mirror images, parallel borders, both, or nothing"});
   describe_group(v, "refine", o.refine,
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
 
-OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options) {
-  if (view.kind != ViewKind::photo)
-    throw Error("reconstruction from one view needs a photo view", view_name(view.kind), "photo");
+OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& options) {
+  if (drawn.kind != ViewKind::photo)
+    throw Error("reconstruction from one view needs a photo view", view_name(drawn.kind), "photo");
   OneViewResult result;
   result.disagreement = options.disagreement;
   const int half_width = options.depth.tangent_half_width;
-  result.planes = drawn_mirror_planes(view, options.vector_ratio);
+  result.planes = drawn_mirror_planes(drawn, options.vector_ratio);
+  result.completed =
+      complete_borders(drawn, result.planes.chosen, options.curves.snap, options.complete);
+  const View& view = result.completed.view;
   if (options.refine && options.refine->vector_ratio == 0)
     result.planes.chosen = plane_from_pairs(view, result.planes.chosen);
   const MirrorPlane plane = result.planes.chosen;
@@ -261,6 +300,13 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   result.surface = mirror_half(result.surface, result.planes.chosen, result.kept_positive,
                                kPlaneReach * result.net.spacing);
   return result;
+}
+
+std::string one_view_note(const View& view, const OneViewOptions& options) {
+  if (view.kind != ViewKind::photo) return "";
+  return completion_note(complete_borders(view,
+                                          drawn_mirror_planes(view, options.vector_ratio).chosen,
+                                          options.curves.snap, options.complete));
 }
 
 }  // namespace geoprior::sketch

@@ -11,6 +11,7 @@
 #include "solvers/sketch/drawing/curve_net.h"
 #include "solvers/sketch/drawing/depth_system.h"
 #include "solvers/sketch/drawing/drawn_panels.h"
+#include "solvers/sketch/drawing/hidden_borders.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
 #include "solvers/sketch/drawing/mirror_surface.h"
 #include "solvers/sketch/surface/refine_depth.h"
@@ -30,6 +31,7 @@ struct OneViewOptions {
   bool mirror = true;
   /// Pixels by which photograph and drawing may disagree, where textures are read (`bake_pattern`).
   double disagreement = 2;
+  Completion complete = Completion::all;
   std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
 };
 void describe(OptionVisitor& v, OneViewOptions& options);
@@ -45,6 +47,7 @@ struct OneViewPatch {
 
 /// Reconstruction: x right, y up, z towards the eye, with z = 0 at the tail of sym-a (m).
 struct OneViewResult {
+  CompletedView completed;  ///< the drawing with whole borders, of which the net is made
   CurveNet net;
   MirrorPlanes planes;  ///< the one used, and the other reading of the same picture
   std::vector<RuledPatch> rulings;
@@ -54,11 +57,14 @@ struct OneViewResult {
   double disagreement = 2;              ///< of photograph and drawing (pixels)
   bool kept_positive = true;            ///< the half towards the eye was kept
   int matches = 0;                      ///< dense symmetric correspondences
+  double guessed_area = 0;              ///< share of the surface, before it is made symmetric
   std::optional<RefinedDepth> refined;  ///< when asked for; `depth` and `planes.chosen` are its
 };
 
 /// Developable surface from one annotated view (thesis 2.1.3; Fondevilla et al. 2017).
 ///
+/// 0. Hidden parts of borders are completed where only what is visible is drawn
+///    (`complete_borders`).
 /// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
 ///    (`mirror_plane.h`), dense symmetric correspondences from the pairs (`dense_matches`), rulings
 ///    from drawn ones by time warping (`sweep_ruled_patches`).
@@ -79,5 +85,8 @@ struct OneViewResult {
 /// @param view    of kind photo
 /// @throws Error  on anything that the steps refuse, with the ids of strokes
 OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options);
+
+/// What was guessed of hidden borders, in a sentence; empty when nothing was.
+std::string one_view_note(const View& view, const OneViewOptions& options);
 
 }  // namespace geoprior::sketch

@@ -74,8 +74,9 @@ Part curves_part(const OneViewResult& result) {
     const auto& [c, k] = places[i];
     const SketchCurve& curve = result.net.curves[c];
     part.points.row(i) = result.depth.nodes.row(curve.nodes[k]);
-    stroke.values(i) = curve.stroke;
-    drawn_at.values(i) = curve.drawn_at[k];
+    const DrawnPlace place = result.completed.place(curve.stroke, curve.drawn_at[k]);
+    stroke.values(i) = place.stroke;
+    drawn_at.values(i) = place.at;
   }
   part.arrays = {std::move(stroke), std::move(drawn_at)};
   return part;
@@ -152,6 +153,12 @@ Frame one_view_frame(const View& view, const OneViewResult& result) {
   }
   frame.diagnostics["condition"] = result.depth.condition;
   frame.diagnostics["matches"] = result.matches;
+  if (!result.completed.guesses.empty()) {
+    const CompletedView& completed = result.completed;
+    frame.diagnostics["guessed_length"] =
+        completed.guessed_length / (completed.drawn_length + completed.guessed_length);
+    frame.diagnostics["guessed_area"] = result.guessed_area;
+  }
   if (result.refined) {
     frame.diagnostics["refine_iterations"] = result.refined->iterations;
     frame.diagnostics["vector_ratio"] = result.refined->vector_ratio;

@@ -36,6 +36,7 @@ struct OneViewInput {
 ///   (number of its name in `panels_of(view)`, -1 without one);
 /// - "strokes" (lines): drawn borders in space; point arrays "stroke" (of the view) and "drawn_at"
 ///   (point of the stroke, with its fraction);
+///   A point that is guessed has stroke -1.
 /// - "rulings" (lines);
 /// - "pattern", "sewn" and the arrays that belong to them, as of several views
 ///   (models/sketch/sketch_process.h).

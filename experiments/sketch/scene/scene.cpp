@@ -48,7 +48,7 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
 
 /// What a known drawing shows is its truth; without a file it is drawn here.
 void load_known(const SketchSceneOptions& o, std::uint64_t seed, SketchScene& scene) {
-  if (o.drawing.empty()) scene.input.drawing = known_drawing(o.known->shape);
+  if (o.drawing.empty()) scene.input.drawing = known_drawing(*o.known);
   scene.truth = known_truth(scene.photo(), *o.known, scene_seed(seed, o.known->seed));
   scene.input.drawing.views = {scene.truth->view};
 }
@@ -116,8 +116,7 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
     if (o.textures->background) files.parts["texels"] = std::move(textured.texels);
   }
   if (o.known && o.drawing.empty()) {
-    for (FabricationFile& file : known_drawing_files(o.known->shape))
-      made.push_back(std::move(file));
+    for (FabricationFile& file : known_drawing_files(*o.known)) made.push_back(std::move(file));
   }
   for (const FabricationFile& file : made)
     files.artifacts.push_back(artifact_of(file.name, file.bytes));

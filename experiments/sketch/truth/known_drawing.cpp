@@ -15,7 +15,7 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr std::array<std::string_view, 3> kKnownNames{"bag", "tent", "helmet"};
+constexpr std::array<std::string_view, 4> kKnownNames{"bag", "tent", "helmet", "frustum"};
 constexpr int kPhotoWidth = 360;
 /// Of drawn points on the page: what a hand can draw (mm).
 constexpr int kPageDecimals = 1;
@@ -23,17 +23,22 @@ constexpr int kPageDecimals = 1;
 /// Puts strokes into SVG, in millimetres of paper with y down.
 class KnownSvg {
  public:
-  KnownSvg(KnownShape shape, const KnownObject& object)
-      : name_(known_name(shape)), object_(object), page_(known_placement(object).page) {}
+  KnownSvg(const KnownDrawingOptions& options, const KnownObject& object)
+      : name_(known_name(options.shape)),
+        object_(object),
+        visible_only_(options.visible_only),
+        page_(known_placement(object).page) {}
   [[nodiscard]] std::string text() const;
 
  private:
   [[nodiscard]] double mm(double metres) const { return 1e3 * metres / object_.drawing_scale; }
   [[nodiscard]] std::string path(const Stroke& stroke) const;
+  [[nodiscard]] std::string photograph(const std::string& width, const std::string& height) const;
   [[nodiscard]] std::string group(const View& view, StrokeKind kind) const;
 
   std::string name_;
   const KnownObject& object_;
+  bool visible_only_;
   Eigen::Vector2d page_;
 };
 
@@ -77,8 +82,15 @@ std::string KnownSvg::group(const View& view, StrokeKind kind) const {
   return text + "   </g>\n";
 }
 
+/// The picture that is drawn over; none where only what is visible is drawn.
+std::string KnownSvg::photograph(const std::string& width, const std::string& height) const {
+  if (visible_only_) return "";
+  return "   <image href=\"" + name_ + ".png\" x=\"0\" y=\"0\" width=\"" + width + "\" height=\"" +
+         height + "\" preserveAspectRatio=\"none\"/>\n";
+}
+
 std::string KnownSvg::text() const {
-  const View view = known_view(object_).view;
+  const View view = known_view(object_, visible_only_).view;
   const std::string width = written_number(mm(page_.x()), kPageDecimals),
                     height = written_number(mm(page_.y()), kPageDecimals);
   const std::string scale = written_number(object_.drawing_scale);
@@ -91,10 +103,8 @@ std::string KnownSvg::text() const {
       "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n     width=\"" +
       width + "mm\" height=\"" + height + "mm\" viewBox=\"0 0 " + width + " " + height +
       "\" data-scale=\"" + scale + "\" fill=\"none\" stroke-width=\"0.8\">\n" +
-      "  <g inkscape:groupmode=\"layer\" inkscape:label=\"view:photo\" id=\"photo\">\n"
-      "   <image href=\"" +
-      name_ + ".png\" x=\"0\" y=\"0\" width=\"" + width + "\" height=\"" + height +
-      "\" preserveAspectRatio=\"none\"/>\n";
+      "  <g inkscape:groupmode=\"layer\" inkscape:label=\"view:photo\" id=\"photo\">\n" +
+      photograph(width, height);
   for (const StrokeKindRow& row : stroke_kinds()) svg += group(view, row.kind);
   return svg + "  </g>\n</svg>\n";
 }
@@ -115,28 +125,50 @@ void describe(OptionVisitor& v, KnownDrawingOptions& o) {
            "factor on the upright vector of the mirror plane, which makes the two unequal in space",
        .min = 0.1,
        .max = 10});
+  v.value("visible_only", o.visible_only,
+          {.doc = "whether hidden parts of borders are left out, and pairs with a hidden end"});
+  v.value("yaw_deg", o.yaw_deg,
+          {.doc = "turn of the object about the upright axis; its own when absent",
+           .unit = "deg",
+           .min = -180,
+           .max = 180});
+  v.value("pitch_deg", o.pitch_deg,
+          {.doc = "angle of the eye above the horizon; the object's own when absent",
+           .unit = "deg",
+           .min = -89,
+           .max = 89});
   v.value("seed", o.seed, {.doc = "seed of the noise", .min = 0, .max = 1000000000});
 }
 
-std::vector<FabricationFile> known_drawing_files(KnownShape shape) {
-  const KnownObject object = known_object(shape);
-  const std::string name = known_name(shape);
-  return {{name + ".svg", KnownSvg(shape, object).text()},
-          {name + ".png", png_bytes(known_photo(shape, object, kPhotoWidth))}};
+KnownObject shown_object(const KnownDrawingOptions& options) {
+  KnownObject object = known_object(options.shape);
+  object.yaw_deg = options.yaw_deg.value_or(object.yaw_deg);
+  object.pitch_deg = options.pitch_deg.value_or(object.pitch_deg);
+  return object;
 }
 
-Drawing known_drawing(KnownShape shape) {
-  const KnownObject object = known_object(shape);
-  View view = known_view(object).view;
-  view.picture.content = png_bytes(known_photo(shape, object, kPhotoWidth));
+std::vector<FabricationFile> known_drawing_files(const KnownDrawingOptions& options) {
+  const KnownObject object = shown_object(options);
+  const std::string name = known_name(options.shape);
+  std::vector<FabricationFile> files{{name + ".svg", KnownSvg(options, object).text()}};
+  if (!options.visible_only)
+    files.push_back({name + ".png", png_bytes(known_photo(options.shape, object, kPhotoWidth))});
+  return files;
+}
+
+Drawing known_drawing(const KnownDrawingOptions& options) {
+  const KnownObject object = shown_object(options);
+  View view = known_view(object, options.visible_only).view;
+  if (!options.visible_only)
+    view.picture.content = png_bytes(known_photo(options.shape, object, kPhotoWidth));
   view.picture.size = known_placement(object).page;
   return {"scene.known", {std::move(view)}};
 }
 
 SyntheticView known_truth(const View& view, const KnownDrawingOptions& options,
                           std::uint64_t seed) {
-  const KnownObject object = known_object(options.shape);
-  SyntheticView known = known_view(object);
+  const KnownObject object = shown_object(options);
+  SyntheticView known = known_view(object, options.visible_only);
   SyntheticView truth = known;
   truth.view = view;
   truth.truth.clear();

@@ -222,12 +222,32 @@ KnownObject known_helmet() {
   return std::move(b.object);
 }
 
+KnownObject known_frustum() {
+  ObjectBuilder b;
+  const auto rim = [](double radius, double y) -> SpaceCurve {
+    return [=](double t) -> Eigen::Vector3d {
+      return {radius * std::cos(kFullTurn * t), y, radius * std::sin(kFullTurn * t)};
+    };
+  };
+  const SpaceCurve bottom = rim(0.1, 0), top = rim(0.06, 0.15);
+  b.border("bottom", "shade", bottom, true);
+  b.border("top", "shade", top, true);
+  b.ruled("shade", bottom, top);
+  for (const double t : {0.12, 0.16, 0.2}) b.pair("shade", bottom(t));
+  b.pair("shade", top(0.25));
+  b.object.vectors = {0, 0, 0};
+  b.object.vector_sizes = {0.15, 0.15};
+  b.object.height = 0.15;
+  return std::move(b.object);
+}
+
 }  // namespace
 
 KnownObject known_object(KnownShape shape) {
-  KnownObject object = shape == KnownShape::bag    ? known_bag()
-                       : shape == KnownShape::tent ? known_tent()
-                                                   : known_helmet();
+  KnownObject object = shape == KnownShape::bag      ? known_bag()
+                       : shape == KnownShape::tent   ? known_tent()
+                       : shape == KnownShape::helmet ? known_helmet()
+                                                     : known_frustum();
   for (std::size_t k = 0; k < object.pairs.size(); ++k)
     object.pairs[k].id = "pair-" + std::to_string(k + 1);
   return object;

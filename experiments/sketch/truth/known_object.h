@@ -10,9 +10,10 @@ namespace geoprior::sketch {
 
 /// Products that are known in closed form, of the kinds that the thesis shows in Figure 2.13.
 enum class KnownShape {
-  bag,     ///< two flat faces, a bent gusset between them, a flap and a handle
-  tent,    ///< a tunnel: conical porch, cylindrical middle, conical tail, flat ends
-  helmet,  ///< a kettle hat: brim, brow band and two conical bands of sheet metal, with a comb
+  bag,      ///< two flat faces, a bent gusset between them, a flap and a handle
+  tent,     ///< a tunnel: conical porch, cylindrical middle, conical tail, flat ends
+  helmet,   ///< a kettle hat: brim, brow band and two conical bands of sheet metal, with a comb
+  frustum,  ///< of a cone, open at both ends: a lampshade
 };
 
 /// A border curve in space.

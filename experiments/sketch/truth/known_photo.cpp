@@ -47,10 +47,15 @@ PanelMaterial helmet_material(const std::string& panel) {
   return {steel, dark, 0.035, 0.03, 0.05, false};
 }
 
+PanelMaterial paper_material() {
+  return {{0.9, 0.84, 0.7}, {0.62, 0.4, 0.3}, 0.03, 0.03, 0.1, true};
+}
+
 PanelMaterial material_of(KnownShape shape, const std::string& panel) {
-  return shape == KnownShape::bag    ? bag_material(panel)
-         : shape == KnownShape::tent ? tent_material(panel)
-                                     : helmet_material(panel);
+  return shape == KnownShape::bag      ? bag_material(panel)
+         : shape == KnownShape::tent   ? tent_material(panel)
+         : shape == KnownShape::helmet ? helmet_material(panel)
+                                       : paper_material();
 }
 
 /// Flat coordinates of the vertices of `panel_mesh`.

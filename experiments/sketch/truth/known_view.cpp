@@ -23,8 +23,11 @@ constexpr double kCovers = 0.01;
 /// Draws a known object.
 class KnownDrawing {
  public:
-  explicit KnownDrawing(const KnownObject& object)
-      : object_(object), place_(known_placement(object)), seen_(placed_panels(object, place_)) {}
+  KnownDrawing(const KnownObject& object, bool visible_only)
+      : object_(object),
+        visible_only_(visible_only),
+        place_(known_placement(object)),
+        seen_(placed_panels(object, place_)) {}
   SyntheticView draw();
 
  private:
@@ -32,12 +35,15 @@ class KnownDrawing {
   Stroke& add(const std::string& id, StrokeKind kind, const std::vector<Eigen::Vector3d>& placed);
   [[nodiscard]] std::vector<Eigen::Vector3d> placed(const std::vector<Eigen::Vector3d>& p) const;
   void draw_borders();
+  void draw_visible(const KnownBorder& border);
+  [[nodiscard]] Eigen::Vector3d last_seen(Eigen::Vector3d seen, Eigen::Vector3d hidden) const;
   void draw_hidden(const std::string& id, std::vector<Eigen::Vector3d> points, bool closed);
   void draw_rulings(const KnownPanel& panel);
   void draw_pairs();
   void draw_vector(const std::string& name, const Eigen::Vector3d& head);
 
   const KnownObject& object_;
+  bool visible_only_;
   KnownPlacement place_;
   PlacedPanels seen_;
   SyntheticView out_;
@@ -76,7 +82,69 @@ std::vector<Eigen::Vector3d> KnownDrawing::placed(const std::vector<Eigen::Vecto
   return points;
 }
 
+/// A straight border is looked at in between.
+std::vector<Eigen::Vector3d> looked_at(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kBetween = 24;
+  if (points.size() != 2) return points;
+  std::vector<Eigen::Vector3d> dense;
+  for (int k = 0; k <= kBetween; ++k)
+    dense.emplace_back(points[0] + (points[1] - points[0]) * (static_cast<double>(k) / kBetween));
+  return dense;
+}
+
+/// The point between a seen and a hidden one where something begins to cover the border.
+Eigen::Vector3d KnownDrawing::last_seen(Eigen::Vector3d seen, Eigen::Vector3d hidden) const {
+  constexpr int kHalvings = 7;
+  for (int k = 0; k < kHalvings; ++k) {
+    const Eigen::Vector3d middle = (seen + hidden) / 2;
+    (is_hidden(middle) ? hidden : seen) = middle;
+  }
+  return seen;
+}
+
+/// One stroke for each stretch that is seen; the whole border where nothing hides it.
+void KnownDrawing::draw_visible(const KnownBorder& border) {
+  const std::vector<Eigen::Vector3d> points = looked_at(placed(border.points));
+  const std::size_t n = points.size();
+  std::vector<bool> hidden;
+  for (const Eigen::Vector3d& p : points) hidden.push_back(is_hidden(p));
+  const auto covered = std::find(hidden.begin(), hidden.end(), true);
+  if (covered == hidden.end()) {
+    Stroke& stroke = add(border.id, StrokeKind::border, placed(border.points));
+    stroke.name = border.panels;
+    stroke.closed = border.closed;
+    return;
+  }
+  const std::size_t start = border.closed ? static_cast<std::size_t>(covered - hidden.begin()) : 0;
+  std::vector<Eigen::Vector3d> run;
+  int number = 0;
+  for (std::size_t k = 0; k <= n; ++k) {
+    const std::size_t i = (start + k) % n, before = (start + k + n - 1) % n;
+    const bool inside = border.closed || k < n;  // a ring comes back to its hidden start
+    if (inside && !hidden[i]) {
+      if (run.empty() && (border.closed || k > 0))
+        run.push_back(last_seen(points[i], points[before]));
+      run.push_back(points[i]);
+      continue;
+    }
+    if (inside && !run.empty()) run.push_back(last_seen(points[before], points[i]));
+    if (run.size() > 2) {
+      const std::string suffix = ++number > 1 ? "-" + std::to_string(number) : "";
+      add(border.id + suffix, StrokeKind::border, run).name = border.panels;
+    }
+    run.clear();
+  }
+}
+
 void KnownDrawing::draw_borders() {
+  for (const KnownBorder& border : object_.borders) {
+    out_.borders.push_back(placed(border.points));
+    if (border.closed) out_.borders.back().push_back(out_.borders.back().front());
+  }
+  if (visible_only_) {
+    for (const KnownBorder& border : object_.borders) draw_visible(border);
+    return;
+  }
   for (const KnownBorder& border : object_.borders) {
     Stroke& stroke = add(border.id, StrokeKind::border, placed(border.points));
     stroke.name = border.panels;
@@ -86,16 +154,10 @@ void KnownDrawing::draw_borders() {
     draw_hidden(border.id, placed(border.points), border.closed);
 }
 
-/// One occlusion for each hidden run of the points; a straight border is looked at in between.
+/// One occlusion for each hidden run of the points.
 void KnownDrawing::draw_hidden(const std::string& id, std::vector<Eigen::Vector3d> points,
                                bool closed) {
-  constexpr int kBetween = 24;
-  if (points.size() == 2) {
-    const Eigen::Vector3d a = points[0], b = points[1];
-    points.clear();
-    for (int k = 0; k <= kBetween; ++k)
-      points.emplace_back(a + (b - a) * (static_cast<double>(k) / kBetween));
-  }
+  points = looked_at(points);
   const std::size_t n = points.size();
   std::vector<bool> hidden;
   for (const Eigen::Vector3d& p : points) hidden.push_back(is_hidden(p));
@@ -151,6 +213,7 @@ void KnownDrawing::draw_pairs() {
     // A point of the plane is a tick: a stroke has two different ends.
     if (std::abs(p.x()) < kTick * object_.height) p.x() = -kTick * object_.height;
     const Eigen::Vector3d image(-p.x(), p.y(), p.z());
+    if (visible_only_ && (is_hidden(place_(p)) || is_hidden(place_(image)))) continue;
     Stroke& stroke = add(pair.id, StrokeKind::symmetric_pair, {place_(p), place_(image)});
     stroke.name = pair.id;
     stroke.panels = pair.panels;
@@ -216,7 +279,9 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
   return placed;
 }
 
-SyntheticView known_view(const KnownObject& object) { return KnownDrawing(object).draw(); }
+SyntheticView known_view(const KnownObject& object, bool visible_only) {
+  return KnownDrawing(object, visible_only).draw();
+}
 
 void add_drawing_noise(View& view, double spread, std::uint64_t seed) {
   constexpr double kShort = 8;     // spreads, below which both ends of a pair are one mark

@@ -37,8 +37,12 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
 /// - the object's pairs (points of the mirror plane as ticks along its normal), and the two vectors
 ///   of the mirror plane.
 ///
+/// With `visible_only` as the thesis has it, nothing that is hidden is drawn: of every border the
+/// stretches that are seen, each a stroke of its own, up to where something begins to cover them
+/// ("bottom", "bottom-2", ...), of the pairs those both of whose ends are seen, and no occlusion.
+///
 /// Every stroke has its true place in space, every panel its true area.
-SyntheticView known_view(const KnownObject& object);
+SyntheticView known_view(const KnownObject& object, bool visible_only = false);
 
 /// Moves every drawn point by normal noise. Each stroke has random numbers of its own; a tick moves
 /// as a whole, ends of borders that meet move together (drawing programs snap them), and plane

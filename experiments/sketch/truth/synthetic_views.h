@@ -51,6 +51,8 @@ struct SyntheticView {
   Eigen::Vector3d apex{0, 0, 0};           ///< of the cone; far away for a cylinder
   double height = 0;                       ///< m
   std::map<std::string, double> panel_areas = {};  ///< of named panels, where they are known (m^2)
+  /// Borders with their hidden parts, of a known object; a closed one ends with its first point.
+  std::vector<std::vector<Eigen::Vector3d>> borders = {};
 };
 
 /// Orthographic drawing of a shape, as a careful user makes it: borders whole (hidden parts too,

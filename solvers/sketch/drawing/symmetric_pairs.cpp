@@ -13,6 +13,8 @@ namespace {
 
 /// Ends of pairs are drawn onto borders by hand: they may miss by this many snapping distances.
 constexpr double kPairReach = 2;
+/// And by this share of the diagonal, however finely ends are snapped.
+constexpr double kPairHand = 0.03;
 
 /// The place and, where it is a node of other curves too, its places on them.
 std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place) {
@@ -55,14 +57,15 @@ std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
 
 NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
                            const Eigen::Vector2d& end, const std::string& where) {
-  NearestOnNet best{{}, kPairReach * net.snap};
+  const double reach = std::max(kPairReach * net.snap, kPairHand * net.diagonal);
+  NearestOnNet best{{}, reach};
   for (const int c : borders) {
     const NearestOnNet near = nearest_on_curve(net, c, end);
     if (near.distance < best.distance) best = near;
   }
   if (best.place.curve >= 0) return best;
   throw Error("an end of the symmetric pair lies on no border", where,
-              "within " + std::to_string(kPairReach * net.snap) + " m of one");
+              "within " + std::to_string(reach) + " m of one");
 }
 
 /// Puts the ends onto the nearest borders, or both onto one that is about as near: where the images

@@ -209,7 +209,7 @@ TEST_P(KnownObjects, TruthBelongsToTheDrawing) {
 }
 
 TEST_P(KnownObjects, AnotherDrawingIsRefused) {
-  View view = known_drawing(GetParam()).views.front();
+  View view = known_drawing({.shape = GetParam()}).views.front();
   view.strokes.front().points.pop_back();
   EXPECT_THAT(geoprior::test::error_of([&] { known_truth(view, {.shape = GetParam()}, 1); }),
               AllOf(HasSubstr("is no stroke of the known " + known_name(GetParam())),

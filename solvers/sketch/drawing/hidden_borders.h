@@ -1,0 +1,73 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/sketch/drawing/drawing.h"
+#include "solvers/sketch/drawing/mirror_plane.h"
+
+namespace geoprior::sketch {
+
+/// What hidden parts of borders are guessed from.
+enum class Completion {
+  all,       ///< parallel copies, ellipses, mirror images and smooth continuation
+  mirror,    ///< mirror images and smooth continuation
+  parallel,  ///< parallel copies, ellipses and smooth continuation
+  none,      ///< nothing is guessed
+};
+
+/// Where a point of a completed border was drawn.
+struct DrawnPlace {
+  int stroke = -1;  ///< of the drawing; -1: nowhere, it is guessed
+  double at = 0;    ///< number of its point
+};
+
+/// A stretch of a border that nothing of the drawing shows.
+struct GuessedStretch {
+  std::string border;  ///< stroke that it continues; of a closing line its panel
+  std::string from;    ///< "the parallel border 'top'", "an ellipse", …
+  double length = 0;   ///< in the view (m)
+};
+
+/// A view whose borders are whole.
+struct CompletedView {
+  View view;
+  std::vector<std::vector<DrawnPlace>> places;  ///< of each point of each stroke
+  std::vector<GuessedStretch> guesses;
+  std::vector<std::string> open_ends;  ///< strokes that end where something covers them, as drawn
+  double drawn_length = 0;             ///< of all borders in the view (m)
+  double guessed_length = 0;
+
+  /// Of a place on one of its strokes.
+  [[nodiscard]] DrawnPlace place(int stroke, double at) const;
+};
+
+/// Completes the borders of a drawing that shows only what can be seen (thesis 2.1.3).
+///
+/// A drawing with strokes of kind occlusion says itself what is hidden, and is left as it is; so is
+/// one in which no border ends where another stroke covers it. Otherwise:
+///
+/// 1. Stretches of one border are put together: of the same panels, and either named alike ("rim",
+///    "rim-2") or meeting smoothly.
+/// 2. What a border lacks comes from a whole border that a drawn ruling joins it to, as its
+///    parallel copy (`ParallelCopy`: parts of cones and cylinders are bounded by parallel planes,
+///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one.
+/// 3. A rim whose ends are both covered, and which is seen for more than five ninths of an ellipse
+///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen and
+///    its mirror image.
+/// 4. A border with two pairs is continued by its mirror image.
+/// 5. Stretches that are still apart are joined by a cubic; a flat panel whose borders are still no
+///    loop is closed by a straight line.
+///
+/// Guesses agree with what is seen to two snapping distances, or are not made. Whatever is guessed
+/// is marked by an occlusion in the result. It cannot guess what neither a visible neighbour nor
+/// symmetry shows: such ends stay, and are listed.
+///
+/// @param snap  share of the drawing's diagonal within which ends meet
+CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
+                               Completion completion);
+
+/// One sentence on what was guessed; empty when nothing was and no end is left.
+std::string completion_note(const CompletedView& completed);
+
+}  // namespace geoprior::sketch
