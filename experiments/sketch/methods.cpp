@@ -163,6 +163,8 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"guessed_area", "1",
         "share of the surface, before it is mirrored, between borders that are not drawn"},
        {"arc_condition", "1", "greatest over least singular value of an arc's fit, the worst"},
+       {"ratio_gain", "1",
+        "cost of the refinement with the ratio of the drawn vectors held over that without"},
        {"refine_iterations", "1", "steps of the non-linear refinement"},
        {"flow_energy", "1", "what a flow descends, as it defines it"}});
   table.unmeasured(

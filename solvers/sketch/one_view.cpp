@@ -8,6 +8,7 @@
 #include "core/connectivity.h"
 #include "core/error.h"
 #include "solvers/sketch/drawing/dense_matches.h"
+#include "solvers/sketch/drawing/faired_borders.h"
 #include "solvers/sketch/drawing/symmetric_pairs.h"
 #include "solvers/sketch/surface/fair_patch.h"
 #include "solvers/sketch/surface/ruled_patches.h"
@@ -23,6 +24,11 @@ constexpr int kFairSolves = 6;
 constexpr double kPlaneReach = 0.1;
 /// Halves whose visible borders differ by less than this share are equally visible.
 constexpr double kEvenHalves = 0.02;
+
+/// Weight of the ratio of the drawn vectors' lengths when it is held.
+constexpr double kHeldRatio = 1;
+/// Of the cost with the ratio held over that without: above it, the vectors were drawn unequal.
+constexpr double kClearGain = 3;
 
 constexpr std::array<std::string_view, 4> kCompletionNames{"all", "mirror", "parallel", "none"};
 
@@ -213,6 +219,33 @@ std::string name_of_patch(const CurveNet& net, const RuledPatch& patch) {
   return patch.id;
 }
 
+/// Whether one border of a patch was completed as the parallel copy of the other.
+bool is_copied(const CompletedView& completed, const CurveNet& net, const RuledPatch& patch) {
+  const int a = net.curves[patch.first].stroke, b = net.curves[patch.second].stroke;
+  return std::any_of(completed.copies.begin(), completed.copies.end(), [&](const auto& copy) {
+    return (copy[0] == a && copy[1] == b) || (copy[0] == b && copy[1] == a);
+  });
+}
+
+/// Refined with the drawn vectors' ratio held, or without it where that costs clearly less.
+RefinedDepth refine_either(const View& view, const DepthProblem& problem,
+                           const DepthSolution& linear, const OneViewOptions& options) {
+  RefineOptions refine = *options.refine;
+  const bool free_ratio = refine.vector_ratio == 0;
+  if (free_ratio) refine.vector_ratio = kHeldRatio;
+  RefinedDepth held =
+      refine_depth(view, problem, linear, options.depth, options.vector_ratio, refine);
+  if (!free_ratio) return held;
+  DepthProblem other = problem;
+  other.plane = plane_from_pairs(view, problem.plane);
+  other.matches =
+      dense_matches(problem.net, problem.pairs, other.plane, options.depth.tangent_half_width);
+  RefinedDepth found = refine_depth(view, other, solve_depth(other, options.depth), options.depth,
+                                    options.vector_ratio, *options.refine);
+  found.ratio_gain = held.ratio_gain = held.cost_after / std::max(found.cost_after, 1e-300);
+  return held.ratio_gain > kClearGain ? found : held;
+}
+
 /// Fills the patches and welds them.
 void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneViewResult& result) {
   SurfaceBuilder builder(result);
@@ -256,6 +289,7 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
                   "texture that lie so near to a panel's border are taken from farther inside",
            .min = 0,
            .max = 50});
+  v.value("fair", o.fair, {.doc = "whether trembling borders are faired before all else"});
   describe_choice(v, "complete", o.complete, kCompletionNames,
                   {.doc = "what hidden parts of borders are guessed from, in a drawing that marks "
                           "none: mirror images, parallel borders, both, or nothing"});
@@ -271,25 +305,26 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
   const int half_width = options.depth.tangent_half_width;
   result.planes = drawn_mirror_planes(drawn, options.vector_ratio);
   result.completed =
-      complete_borders(drawn, result.planes.chosen, options.curves.snap, options.complete);
+      complete_borders(options.fair ? faired_borders(drawn, options.curves.snap) : drawn,
+                       result.planes.chosen, options.curves.snap, options.complete);
   const View& view = result.completed.view;
-  if (options.refine && options.refine->vector_ratio == 0)
-    result.planes.chosen = plane_from_pairs(view, result.planes.chosen);
   const MirrorPlane plane = result.planes.chosen;
   result.net = build_curve_net(view, options.curves);
-  DepthProblem problem{result.net, plane, {}, {}, {}, {}};
+  DepthProblem problem{result.net, plane, {}, {}, {}, {}, {}};
   problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
   problem.matches = dense_matches(result.net, problem.pairs, plane, half_width);
   result.matches = static_cast<int>(problem.matches.size());
   problem.ruled = sweep_ruled_patches(view, result.net, half_width, options.rulings);
   result.rulings = problem.ruled;
-  const std::vector<DrawnPanel> panels = find_drawn_panels(result.net, problem.ruled);
+  for (const RuledPatch& patch : problem.ruled)
+    problem.copied.push_back(is_copied(result.completed, result.net, patch));
+  const std::vector<DrawnPanel> panels =
+      find_drawn_panels(result.net, problem.ruled, options.complete == Completion::none);
   for (const DrawnPanel& panel : panels)
     if (panel.flat) problem.planar.push_back(panel.loop);
   result.depth = solve_depth(problem, options.depth);
   if (options.refine) {
-    result.refined = refine_depth(view, problem, result.depth, options.depth, options.vector_ratio,
-                                  *options.refine);
+    result.refined = refine_either(view, problem, result.depth, options);
     result.depth = result.refined->solution;
     result.planes.chosen = result.refined->plane;
   }
@@ -304,9 +339,10 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
 
 std::string one_view_note(const View& view, const OneViewOptions& options) {
   if (view.kind != ViewKind::photo) return "";
-  return completion_note(complete_borders(view,
+  const double snap = options.curves.snap;
+  return completion_note(complete_borders(options.fair ? faired_borders(view, snap) : view,
                                           drawn_mirror_planes(view, options.vector_ratio).chosen,
-                                          options.curves.snap, options.complete));
+                                          snap, options.complete));
 }
 
 }  // namespace geoprior::sketch

@@ -31,8 +31,10 @@ struct OneViewOptions {
   bool mirror = true;
   /// Pixels by which photograph and drawing may disagree, where textures are read (`bake_pattern`).
   double disagreement = 2;
+  bool fair = true;
   Completion complete = Completion::all;
-  std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
+  std::optional<RefineOptions> refine =
+      RefineOptions{};  ///< non-linear, from the quadratic energy's minimum
 };
 void describe(OptionVisitor& v, OneViewOptions& options);
 
@@ -63,13 +65,17 @@ struct OneViewResult {
 
 /// Developable surface from one annotated view (thesis 2.1.3; Fondevilla et al. 2017).
 ///
-/// 0. Hidden parts of borders are completed where only what is visible is drawn
+/// 0. Trembling borders are faired (`faired_borders`). Hidden parts of borders are completed where
+/// only what is visible is drawn
 ///    (`complete_borders`).
 /// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
 ///    (`mirror_plane.h`), dense symmetric correspondences from the pairs (`dense_matches`), rulings
 ///    from drawn ones by time warping (`sweep_ruled_patches`).
 /// 2. Depth is the minimum of one quadratic energy (`solve_depth`); with `refine`, depth and mirror
-///    plane are then improved together (`refine_depth`).
+///    plane are then improved together (`refine_depth`): with the drawn vectors' lengths held to
+///    their ratio, as the linear system takes them, and, where `vector_ratio` of the refinement is
+///    0, with the ratio free. The free one is kept when its cost is clearly less: in a flat view,
+///    where the ratio alone tells the plane, both cost the same.
 /// 3. Ruled patches become strips, other named panels fair patches; borders are shared, so that
 ///    patches are welded. With `mirror`, the half whose borders are more visible is kept (the one
 ///    towards the eye when both are within 2 %), and its mirror image joined along the plane.

@@ -161,6 +161,7 @@ Frame one_view_frame(const View& view, const OneViewResult& result) {
   }
   if (result.refined) {
     frame.diagnostics["refine_iterations"] = result.refined->iterations;
+    frame.diagnostics["ratio_gain"] = result.refined->ratio_gain;
     frame.diagnostics["vector_ratio"] = result.refined->vector_ratio;
     frame.diagnostics["perspective"] = result.refined->perspective;
   }

@@ -65,7 +65,7 @@ class DepthRows {
   void add_symmetry(DepthTerm term, const NodeForm& p, const NodeForm& image);
   void add_pairs();
   void add_developability(const RuledPatch& patch);
-  void add_plane(DepthTerm term, int node, int slopes, int height);
+  void add_plane(DepthTerm term, double weight, int node, int slopes, int height);
   void add_planes();
   void finish();
 
@@ -162,10 +162,8 @@ void DepthRows::add_developability(const RuledPatch& patch) {
 }
 
 /// z - a x - b y - c = 0 at a node, with the drawn x and y; a, b in lengths per diagonal.
-void DepthRows::add_plane(DepthTerm term, int node, int slopes, int height) {
+void DepthRows::add_plane(DepthTerm term, double weight, int node, int slopes, int height) {
   const Eigen::Vector2d p = problem_.net.points[node] / problem_.net.diagonal;
-  const double weight =
-      term == DepthTerm::planarity ? options_.planarity : options_.parallel_planes;
   rows_.push_back(
       {term,
        weight,
@@ -177,16 +175,19 @@ void DepthRows::add_planes() {
   for (const std::vector<int>& panel : problem_.planar) {
     const int slopes = unknowns_;
     unknowns_ += 3;
-    for (const int node : panel) add_plane(DepthTerm::planarity, node, slopes, slopes + 2);
+    for (const int node : panel)
+      add_plane(DepthTerm::planarity, options_.planarity, node, slopes, slopes + 2);
   }
-  if (!(options_.parallel_planes > 0)) return;
-  for (const RuledPatch& patch : problem_.ruled) {
+  for (std::size_t p = 0; p < problem_.ruled.size(); ++p) {
+    const RuledPatch& patch = problem_.ruled[p];
+    const double weight = problem_.parallel_weight(p, options_);
+    if (!(weight > 0)) continue;
     const int slopes = unknowns_;
     unknowns_ += 4;
     for (const int node : problem_.net.curves[patch.first].nodes)
-      add_plane(DepthTerm::parallel, node, slopes, slopes + 2);
+      add_plane(DepthTerm::parallel, weight, node, slopes, slopes + 2);
     for (const int node : problem_.net.curves[patch.second].nodes)
-      add_plane(DepthTerm::parallel, node, slopes, slopes + 3);
+      add_plane(DepthTerm::parallel, weight, node, slopes, slopes + 3);
   }
 }
 
@@ -291,6 +292,9 @@ void describe(OptionVisitor& v, DepthOptions& o) {
   weight("planarity", o.planarity, "weight of the plane of a flat panel's border");
   weight("parallel_planes", o.parallel_planes,
          "weight of parallel planes of both borders of a ruled patch");
+  weight("copied_planes", o.copied_planes,
+         "the same of patches of which one border was completed as the copy of the other, when "
+         "parallel_planes is 0");
   v.value("tangent_half_width", o.tangent_half_width,
           {.doc = "nodes on either side in the fit of a tangent", .min = 1, .max = 100});
   v.value("end_angle_deg", o.end_angle_deg,
@@ -298,6 +302,11 @@ void describe(OptionVisitor& v, DepthOptions& o) {
            .unit = "deg",
            .min = 0,
            .max = 180});
+}
+
+double DepthProblem::parallel_weight(std::size_t patch, const DepthOptions& options) const {
+  if (options.parallel_planes > 0) return options.parallel_planes;
+  return patch < copied.size() && copied[patch] ? options.copied_planes : 0;
 }
 
 const char* depth_term_name(DepthTerm term) {

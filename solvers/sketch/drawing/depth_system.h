@@ -25,6 +25,7 @@ struct DepthOptions {
   double developability = 1;
   double planarity = 1;
   double parallel_planes = 0;
+  double copied_planes = 1;
   int tangent_half_width = 4;
   double end_angle_deg = 1;  ///< rulings whose end angles differ by more are not trusted
 };
@@ -44,6 +45,11 @@ struct DepthProblem {
   std::vector<DenseMatch> matches;
   std::vector<RuledPatch> ruled;
   std::vector<std::vector<int>> planar;  ///< nodes of each flat panel's border
+  std::vector<bool> copied =
+      {};  ///< ruled patches of which one border was completed from the other
+
+  /// Weight of the parallel planes of a ruled patch; 0: none.
+  [[nodiscard]] double parallel_weight(std::size_t patch, const DepthOptions& options) const;
 };
 
 struct DepthSolution {
@@ -83,7 +89,8 @@ std::vector<RulingForms> trusted_rulings(const CurveNet& net, const RuledPatch& 
 ///   the warping was led astray, most often by a silhouette drawn beside where it touches.
 /// - planarity: the border of a flat panel, z = a x + b y + c with unknown a, b, c.
 /// - parallel: both borders of a ruled patch are plane and parallel, z = a x + b y + c1 and
-///   z = a x + b y + c2. The thesis assumes it of cones but does not list it as a term: weight 0.
+///   z = a x + b y + c2. The thesis assumes it of cones but does not list it as a term: weight 0,
+///   but where one border was completed as the parallel copy of the other (`copied_planes`).
 ///
 /// @throws Error  when the depth of curves is not determined: the normal matrix has an eigenvalue
 ///                below 1e-13 times the greatest (names the curves that can move)

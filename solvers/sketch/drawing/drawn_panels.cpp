@@ -1,6 +1,7 @@
 #include "solvers/sketch/drawing/drawn_panels.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
 
@@ -52,10 +53,15 @@ int take_next(const CurveNet& net, std::vector<int>& left, int node, std::vector
   return -1;
 }
 
-std::vector<int> chained_loop(const CurveNet& net, std::vector<int> curves,
-                              const std::string& name) {
+/// A closed loop of nodes, or the curve at an open end.
+struct ChainedLoop {
+  std::vector<int> loop;
+  int open = -1;
+};
+
+ChainedLoop chained_loop(const CurveNet& net, std::vector<int> curves) {
   const SketchCurve& start = net.curves[curves.front()];
-  if (start.closed && curves.size() == 1) return start.nodes;
+  if (start.closed && curves.size() == 1) return {start.nodes, -1};
   std::vector<int> loop = start.nodes;
   int last = curves.front();
   curves.erase(curves.begin());
@@ -66,20 +72,16 @@ std::vector<int> chained_loop(const CurveNet& net, std::vector<int> curves,
     loop.insert(loop.end(), nodes.begin() + 1, nodes.end());
     last = next;
   }
-  if (!curves.empty() || loop.back() != loop.front()) {
-    const int open = curves.empty() ? last : curves.front();
-    throw Error("borders of panel '" + name + "' do not form one closed loop",
-                "stroke '" + net.curves[open].id + "'",
-                "one closed border, or borders that meet end to end");
-  }
+  if (!curves.empty() || loop.back() != loop.front())
+    return {{}, curves.empty() ? last : curves.front()};
   loop.pop_back();
-  return loop;
+  return {std::move(loop), -1};
 }
 
 }  // namespace
 
-std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net,
-                                          const std::vector<RuledPatch>& ruled) {
+std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net, const std::vector<RuledPatch>& ruled,
+                                          bool skip_open) {
   std::vector<DrawnPanel> panels;
   for (const std::string& name : names_of_panels(net)) {
     if (is_ruled(net, ruled, name)) continue;
@@ -91,7 +93,14 @@ std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net,
       straight = straight && is_straight(net, net.curves[c]);
     }
     const bool flat = straight || name.rfind("flat", 0) == 0;
-    panels.push_back({name, chained_loop(net, curves, name), flat});
+    ChainedLoop chain = chained_loop(net, curves);
+    if (chain.open >= 0 && skip_open) continue;
+    if (chain.open >= 0) {
+      throw Error("borders of panel '" + name + "' do not form one closed loop",
+                  "stroke '" + net.curves[chain.open].id + "'",
+                  "one closed border, or borders that meet end to end");
+    }
+    panels.push_back({name, std::move(chain.loop), flat});
   }
   return panels;
 }

@@ -25,8 +25,9 @@ struct DrawnPanel {
 /// 4. It is flat when all its borders are straight, or when its name begins with "flat"; otherwise
 ///    it is filled by a fair patch, whose border needs depth from elsewhere.
 ///
+/// @param skip_open  leaves out the panels whose borders do not form a loop
 /// @throws Error  when the borders of a name do not form a loop (names the stroke at its open end)
-std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net,
-                                          const std::vector<RuledPatch>& ruled);
+std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net, const std::vector<RuledPatch>& ruled,
+                                          bool skip_open = false);
 
 }  // namespace geoprior::sketch

@@ -24,6 +24,8 @@ namespace {
 constexpr double kCoverReach = 2;
 /// The same of the rulings' ends, which a hand puts onto borders.
 constexpr double kRulingReach = 4;
+/// And at least this share of the diagonal.
+constexpr double kHandReach = 0.03;
 /// Turning at either end of a join of two stretches.
 constexpr double kSmoothJoin = 50 * kDegree;
 /// Of the drawing's diagonal: along which the direction of an end is taken, spacing of guesses.
@@ -101,6 +103,8 @@ class BorderCompletion {
   void close_panels(CompletedView& out) const;
   void put_strokes(CompletedView& out) const;
 
+  void copy_pairs(int whole, int copy, const ParallelCopy& map);
+  [[nodiscard]] bool lies_on(const PartialBorder& border, const Stroke& pair) const;
   [[nodiscard]] bool is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> seen_points(const PartialBorder& border) const;
   [[nodiscard]] CopyHints hints_between(int whole, int copy) const;
@@ -116,6 +120,9 @@ class BorderCompletion {
   std::vector<PartialBorder> borders_;
   std::vector<BorderRuling> rulings_;
   std::vector<GuessedStretch> guesses_;
+  std::vector<std::array<int, 2>> copies_;  ///< strokes of the drawing
+  std::vector<Stroke> pairs_;               ///< drawn ones, then those of parallel copies
+  std::size_t drawn_pairs_ = 0;
 };
 
 BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, double snap,
@@ -132,6 +139,9 @@ BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, d
     }
     borders_.push_back(std::move(border));
   }
+  for (const Stroke* pair : strokes_of(view, StrokeKind::symmetric_pair))
+    if (!pair->points.empty()) pairs_.push_back(*pair);
+  drawn_pairs_ = pairs_.size();
   diagonal_ = box.isEmpty() ? 0 : box.diagonal().norm();
   snap_ = snap * diagonal_;
 }
@@ -248,7 +258,7 @@ void BorderCompletion::find_rulings() {
     BorderRuling found;
     found.end = {stroke.points.front(), stroke.points.back()};
     for (int k = 0; k < 2; ++k) {
-      double least = std::max(kRulingReach * snap_, 0.03 * diagonal_);
+      double least = std::max(kRulingReach * snap_, kHandReach * diagonal_);
       for (int b = 0; b < std::ssize(borders_); ++b) {
         const std::vector<std::string>& panels = borders_[b].panels;
         const bool named = stroke.name.empty() ||
@@ -396,11 +406,55 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
     from = other;
   }
   if (!best) return false;
+  copy_pairs(from, number, *best);
+  copies_.push_back({borders_[from].stroke, borders_[number].stroke});
   const PartialBorder& neighbour = borders_[from];
   PictureCurve model = picture_of(neighbour.stretches.front(), neighbour.closed);
   for (Eigen::Vector2d& p : model.points) p = (*best)(p);
   return follow(number, evenly(model, kGuessSpacing * diagonal_),
                 "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
+}
+
+/// Whether both ends of a pair lie on a border that has the panels which the pair names.
+bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) const {
+  const std::vector<std::string> panels = panels_in(pair.panels);
+  const bool named = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
+    return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
+  });
+  if (!named) return false;
+  const double reach = std::max(kRulingReach * snap_, kHandReach * diagonal_);
+  // Where others of the same panels are nearer, the pair belongs to them.
+  for (const Eigen::Vector2d& end : {pair.points.front(), pair.points.back()}) {
+    const double own = distance_to(border, end);
+    if (own > reach) return false;
+    for (const PartialBorder& other : borders_)
+      if (&other != &border && other.panels == border.panels && distance_to(other, end) < own)
+        return false;
+  }
+  return true;
+}
+
+/// The copy of a border that is its own mirror image is so too, in the same plane: pairs of one are
+/// pairs of the other. Not beside those that are drawn on it.
+void BorderCompletion::copy_pairs(int whole, int copy, const ParallelCopy& map) {
+  const Stroke& border = view_.strokes[borders_[copy].stroke];
+  std::vector<Stroke> copies;
+  for (const Stroke& pair : pairs_) {
+    if (!lies_on(borders_[whole], pair)) continue;
+    Stroke image = pair;
+    image.id = border.id + "-" + pair.id;
+    image.panels = border.name;
+    for (Eigen::Vector2d& p : image.points) p = map(p);
+    const bool near = std::any_of(pairs_.begin(), pairs_.end(), [&](const Stroke& other) {
+      return lies_on(borders_[copy], other) &&
+             (nearest_place({other.points, false}, image.points.front()).distance <=
+                  kEndPart * diagonal_ ||
+              nearest_place({other.points, false}, image.points.back()).distance <=
+                  kEndPart * diagonal_);
+    });
+    if (!near) copies.push_back(std::move(image));
+  }
+  pairs_.insert(pairs_.end(), copies.begin(), copies.end());
 }
 
 /// Both ends lie at ends of silhouettes that join it to others: the surface turns away there.
@@ -447,17 +501,8 @@ bool BorderCompletion::go_round(int number) {
 /// From the pairs whose two ends lie on the border.
 std::optional<PictureMirror> BorderCompletion::mirror_of(const PartialBorder& border) const {
   std::vector<Eigen::Vector2d> middles;
-  for (const Stroke* pair : strokes_of(view_, StrokeKind::symmetric_pair)) {
-    const std::vector<std::string> panels = panels_in(pair->panels);
-    const bool named = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
-      return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
-    });
-    const double reach = kRulingReach * snap_;
-    if (!named || distance_to(border, pair->points.front()) > reach ||
-        distance_to(border, pair->points.back()) > reach)
-      continue;
-    middles.emplace_back((pair->points.front() + pair->points.back()) / 2);
-  }
+  for (const Stroke& pair : pairs_)
+    if (lies_on(border, pair)) middles.emplace_back((pair.points.front() + pair.points.back()) / 2);
   const Eigen::Vector2d u = plane_.normal.head<2>().normalized();
   return fit_picture_mirror(u, middles, kEndPart * diagonal_);
 }
@@ -590,6 +635,7 @@ void BorderCompletion::close_panels(CompletedView& out) const {
 /// each stretch that is guessed.
 void BorderCompletion::put_strokes(CompletedView& out) const {
   std::vector<Stroke> hidden;
+  std::map<int, int> number_of;  // strokes of the drawing in the result
   for (int s = 0; s < std::ssize(view_.strokes); ++s) {
     Stroke stroke = view_.strokes[s];
     std::vector<DrawnPlace> places;
@@ -625,8 +671,13 @@ void BorderCompletion::put_strokes(CompletedView& out) const {
       }
     }
     out.places.push_back(std::move(places));
+    number_of[s] = static_cast<int>(out.view.strokes.size());
     out.view.strokes.push_back(std::move(stroke));
   }
+  for (const auto& [whole, copy] : copies_)
+    out.copies.push_back({number_of.at(whole), number_of.at(copy)});
+  hidden.insert(hidden.end(), pairs_.begin() + static_cast<std::ptrdiff_t>(drawn_pairs_),
+                pairs_.end());
   for (Stroke& stroke : hidden) {
     out.places.emplace_back(stroke.points.size());
     out.view.strokes.push_back(std::move(stroke));

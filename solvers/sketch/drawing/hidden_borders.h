@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ enum class Completion {
   all,       ///< parallel copies, ellipses, mirror images and smooth continuation
   mirror,    ///< mirror images and smooth continuation
   parallel,  ///< parallel copies, ellipses and smooth continuation
-  none,      ///< nothing is guessed
+  none,      ///< nothing is guessed: flat and fair panels with an open border are left out
 };
 
 /// Where a point of a completed border was drawn.
@@ -34,6 +35,7 @@ struct CompletedView {
   View view;
   std::vector<std::vector<DrawnPlace>> places;  ///< of each point of each stroke
   std::vector<GuessedStretch> guesses;
+  std::vector<std::array<int, 2>> copies;  ///< strokes: a border and its parallel copy
   std::vector<std::string> open_ends;  ///< strokes that end where something covers them, as drawn
   double drawn_length = 0;             ///< of all borders in the view (m)
   double guessed_length = 0;

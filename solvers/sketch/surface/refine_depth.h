@@ -15,6 +15,7 @@ struct RefineOptions {
   double accuracy = 30;
   double right_angle = 10;
   double vector_ratio = 0;
+  bool angles = true;
   bool perspective = false;
   double flatness = 1e-4;  ///< weight of no perspective, when it is unknown
 };
@@ -27,6 +28,9 @@ struct RefinedDepth {
   double vector_ratio = 1;  ///< |sym-a| over |sym-b| in space
   double perspective = 0;   ///< growth of the image over one diagonal of depth
   int iterations = 0;
+  /// Cost with the drawn vectors' lengths held to their ratio over the cost without it, where both
+  /// were sought; the solution is the latter's when this is large.
+  double ratio_gain = 1;
   double cost_before = 0, cost_after = 0;  ///< half the sum of weighted squares (m^2)
 };
 
@@ -49,6 +53,9 @@ struct RefinedDepth {
 /// An orthographic picture of one mirror symmetric object leaves no freedom but that of the drawn
 /// vectors: direction of pairs and right angle fix the plane, so that the ratio of lengths need not
 /// be known. Without pairs well apart in direction the plane is as uncertain as they are.
+///
+/// In a flat view the right angle and the pairs hardly tell the plane, and the ratio of lengths
+/// does: `refine_either` tries both.
 ///
 /// Deterministic: one thread, fixed order.
 /// @param start  of `solve_depth`

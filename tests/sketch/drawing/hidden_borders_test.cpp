@@ -1,0 +1,189 @@
+#include "solvers/sketch/drawing/hidden_borders.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/angles.h"
+#include "core/random.h"
+#include "experiments/sketch/truth/known_drawing.h"
+#include "experiments/sketch/truth/known_view.h"
+#include "solvers/sketch/drawing/border_models.h"
+#include "solvers/sketch/drawing/faired_borders.h"
+#include "solvers/sketch/one_view.h"
+
+namespace geoprior::sketch {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+PictureCurve ellipse(double a, double b, int points) {
+  PictureCurve curve{{}, true};
+  for (int k = 0; k < points; ++k) {
+    const double s = kFullTurn * k / points;
+    curve.points.emplace_back(a * std::cos(s), b * std::sin(s));
+  }
+  return curve;
+}
+
+// p -> 0.6 p + (0.1, 0.8), seen for a third of the ellipse and without rulings.
+TEST(ParallelCopies, AreFoundFromAPartOfThem) {
+  const PictureCurve whole = ellipse(1, 0.4, 200);
+  std::vector<Eigen::Vector2d> seen;
+  for (int k = 100; k < 167; ++k)
+    seen.emplace_back(0.6 * whole.points[k] + Eigen::Vector2d(0.1, 0.8));
+  const auto copy = fit_parallel_copy(whole, seen, {});
+  ASSERT_TRUE(copy);
+  EXPECT_NEAR(copy->scale, 0.6, 1e-3);
+  EXPECT_LT((copy->shift - Eigen::Vector2d(0.1, 0.8)).norm(), 1e-3);
+  EXPECT_LT(copy->rms, 1e-4);
+}
+
+// Every scale fits a straight part of a border.
+TEST(ParallelCopies, AreOpenWhereAStraightPartIsSeen) {
+  const PictureCurve whole{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, false};
+  EXPECT_FALSE(fit_parallel_copy(whole, {{1, 1}, {1.2, 1}, {1.4, 1}, {1.6, 1}}, {}));
+}
+
+// Middles (0.1, 0) and (0.4, 1) lie on the axis, along u = x: (1, 0) has the image (-0.8, 0).
+TEST(PictureMirrors, ReflectAlongTheNormalInTheLineOfMiddles) {
+  const auto mirror = fit_picture_mirror({1, 0}, {{0.1, 0}, {0.4, 1}}, 0.1);
+  ASSERT_TRUE(mirror);
+  EXPECT_LT(((*mirror)({1, 0}) - Eigen::Vector2d(-0.8, 0)).norm(), 1e-12);
+  EXPECT_LT(((*mirror)((*mirror)({0.3, 0.7})) - Eigen::Vector2d(0.3, 0.7)).norm(), 1e-12);
+  EXPECT_FALSE(fit_picture_mirror({1, 0}, {{0.1, 0}, {0.4, 0}}, 0.1));
+}
+
+SyntheticView visible(KnownShape shape, double yaw, double pitch) {
+  return known_view(shown_object({.shape = shape, .yaw_deg = yaw, .pitch_deg = pitch}), true);
+}
+
+OneViewOptions completing(Completion completion) {
+  OneViewOptions options;
+  options.curves.snap = 0.008;
+  options.pair_tolerance = 0.3;
+  options.complete = completion;
+  return options;
+}
+
+double area_error(const SyntheticView& drawing, const OneViewResult& result) {
+  double real = 0;
+  for (const auto& [name, area] : drawing.panel_areas) real += area;
+  const TriMesh& mesh = result.surface.mesh;
+  return std::abs(triangle_areas(mesh.V, mesh.F).sum() / real - 1);
+}
+
+// Azimuths of the lower circle that the front hides: 180 degrees less twice what the silhouette
+// reaches beyond a half, sin of which is (r1 - r2) tan(pitch) / h.
+TEST(HiddenBorders, FrustumIsGuessedBehindItsSilhouettes) {
+  const SyntheticView drawing = visible(KnownShape::frustum, 35, 25);
+  EXPECT_TRUE(strokes_of(drawing.view, StrokeKind::occlusion).empty());
+  const CompletedView completed = complete_borders(
+      drawing.view, drawn_mirror_planes(drawing.view).chosen, 0.008, Completion::all);
+  ASSERT_EQ(completed.guesses.size(), 1u);
+  EXPECT_EQ(completed.guesses.front().border, "bottom");
+  EXPECT_THAT(completed.guesses.front().from, HasSubstr("'top'"));
+  const double pitch = 25 * kDegree;
+  const double hidden = std::numbers::pi - 2 * std::asin(0.04 * std::tan(pitch) / 0.15);
+  double length = 0, before = 0;
+  constexpr int kSteps = 2000;
+  for (int k = 0; k <= kSteps; ++k, before += hidden / kSteps) {
+    const double s = before - hidden / 2;  // about the azimuth that points away from the eye
+    length += 0.1 * std::hypot(std::cos(s), std::sin(pitch) * std::sin(s)) * hidden / kSteps;
+  }
+  EXPECT_NEAR(completed.guessed_length, length, 0.02 * length);
+  EXPECT_THAT(completion_note(completed), HasSubstr("guessed"));
+}
+
+TEST(HiddenBorders, FrustumLosesAreaWithoutThem) {
+  const SyntheticView drawing = visible(KnownShape::frustum, 35, 25);
+  const OneViewResult whole = reconstruct_one_view(drawing.view, completing(Completion::all));
+  EXPECT_LT(area_error(drawing, whole), 0.01);
+  EXPECT_GT(whole.guessed_area, 0.1);
+  EXPECT_LT(whole.guessed_area, 0.4);
+  const OneViewResult part = reconstruct_one_view(drawing.view, completing(Completion::none));
+  EXPECT_GT(area_error(drawing, part), 0.25);
+  EXPECT_EQ(part.guessed_area, 0);
+}
+
+TEST(HiddenBorders, ObjectsRunAsPeopleDrawThem) {
+  for (const auto& [shape, pitch] :
+       {std::pair{KnownShape::bag, 25.0}, {KnownShape::tent, 28.0}, {KnownShape::helmet, 22.0}}) {
+    const SyntheticView drawing = visible(shape, 35, pitch);
+    const OneViewResult result = reconstruct_one_view(drawing.view, completing(Completion::all));
+    EXPECT_LT(area_error(drawing, result), 0.05) << known_name(shape);
+  }
+}
+
+// Each guessed node lies on no stroke, each other one on the stroke that it names.
+TEST(HiddenBorders, KnowWhatIsDrawn) {
+  const SyntheticView drawing = visible(KnownShape::tent, 35, 28);
+  const OneViewResult result = reconstruct_one_view(drawing.view, completing(Completion::all));
+  int guessed = 0, drawn = 0;
+  for (const SketchCurve& curve : result.net.curves) {
+    for (int i = 0; i < curve.size(); ++i) {
+      const DrawnPlace place = result.completed.place(curve.stroke, curve.drawn_at[i]);
+      ++(place.stroke < 0 ? guessed : drawn);
+      if (place.stroke < 0) continue;
+      const PictureCurve stroke{drawing.view.strokes[place.stroke].points,
+                                drawing.view.strokes[place.stroke].closed};
+      EXPECT_LT((point_at(stroke, place.at) - result.net.points[curve.nodes[i]]).norm(), 0.02);
+    }
+  }
+  EXPECT_GT(guessed, 50);
+  EXPECT_GT(drawn, 200);
+}
+
+// An arch whose right third is covered by a border of another panel; two pairs lie on what is seen.
+TEST(HiddenBorders, ArchIsContinuedByItsMirrorImage) {
+  View view;
+  view.kind = ViewKind::photo;
+  Stroke arch{"arch", StrokeKind::border, false, {}, DepthSide::front, false, "sheet"};
+  for (int k = 0; k <= 40; ++k) {
+    const double s = std::numbers::pi * (1 - k / 60.0);
+    arch.points.emplace_back(std::cos(s), 1.2 * std::sin(s));
+  }
+  const Eigen::Vector2d end = arch.points.back();
+  Stroke wall{"wall",
+              StrokeKind::border,
+              false,
+              {end - Eigen::Vector2d(0, 1.5), end + Eigen::Vector2d(0, 0.5)}};
+  wall.name = "wall";
+  view.strokes = {arch, wall};
+  for (const double s : {70.0, 80.0}) {
+    const double x = std::cos(s * kDegree), y = 1.2 * std::sin(s * kDegree);
+    view.strokes.push_back({"pair", StrokeKind::symmetric_pair, false, {{-x, y}, {x, y}}});
+  }
+  const MirrorPlane plane{Eigen::Vector3d(0.8, 0, 0.6), 0};
+  const CompletedView completed = complete_borders(view, plane, 0.008, Completion::mirror);
+  ASSERT_EQ(completed.guesses.size(), 1u);
+  EXPECT_EQ(completed.guesses.front().from, "its mirror image");
+  EXPECT_LT((completed.view.strokes[0].points.back() - Eigen::Vector2d(1, 0)).norm(), 0.02);
+  EXPECT_THAT(complete_borders(view, plane, 0.008, Completion::none).guesses, IsEmpty());
+  // With an occlusion the drawing says itself what is hidden.
+  view.strokes.push_back({"hidden", StrokeKind::occlusion, false, {{2, 0}, {3, 0}}});
+  EXPECT_THAT(complete_borders(view, plane, 0.008, Completion::all).guesses, IsEmpty());
+}
+
+// Noise of 1 % of an arc's radius on 72 points: what is left is at most 0.6 of it.
+TEST(FairedBorders, LoseTremorAndKeepTheLine) {
+  RandomStream random(1, "tremor");
+  std::vector<Eigen::Vector2d> clean, drawn;
+  for (int k = 0; k < 72; ++k) {
+    clean.emplace_back(std::cos(0.05 * k), std::sin(0.05 * k));
+    const double dx = 0.01 * random.normal();
+    drawn.emplace_back(clean.back() + Eigen::Vector2d(dx, 0.01 * random.normal()));
+  }
+  const FairedLine faired = fair_line(drawn, false, {false, false}, 1e-4);
+  EXPECT_NEAR(faired.noise, 0.01, 0.003);
+  double sum = 0;
+  for (int k = 0; k < 72; ++k) sum += (faired.points[k] - clean[k]).squaredNorm();
+  EXPECT_LT(std::sqrt(sum / (2 * 72)), 0.6 * 0.01);
+  EXPECT_EQ(fair_line(clean, false, {false, false}, 1e-3).points, clean);
+}
+
+}  // namespace
+}  // namespace geoprior::sketch
