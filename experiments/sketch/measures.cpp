@@ -159,6 +159,35 @@ std::optional<double> ruling_angle(const SyntheticView& truth, const Frame& fram
   return *rms / kDegree;
 }
 
+double distance_to_line(const std::vector<Eigen::Vector3d>& line, const Eigen::Vector3d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Eigen::Vector3d d = line[k + 1] - line[k];
+    const double t = std::clamp(d.dot(p - line[k]) / d.squaredNorm(), 0.0, 1.0);
+    nearest = std::min(nearest, (line[k] + t * d - p).norm());
+  }
+  return nearest;
+}
+
+/// @param offset  as `ruling_angle`
+std::optional<double> guessed_off(const SyntheticView& truth, const Part& curves,
+                                  const Eigen::VectorXd& stroke, double offset) {
+  if (truth.borders.empty()) return {};
+  double sum = 0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < curves.points.rows(); ++i) {
+    if (stroke(i) >= 0) continue;
+    const Eigen::Vector3d p = curves.points.row(i).transpose() + Eigen::Vector3d(0, 0, offset);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::vector<Eigen::Vector3d>& border : truth.borders)
+      nearest = std::min(nearest, distance_to_line(border, p));
+    sum += nearest * nearest;
+    ++count;
+  }
+  if (count == 0) return {};
+  return std::sqrt(sum / count) / truth.height;
+}
+
 }  // namespace
 
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
@@ -191,7 +220,9 @@ TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   measures.depth_rms = error.share;
   measures.depth_max = error.max / truth.height;
   measures.reprojection = error.in_plane_rms / (right - left);
-  measures.ruling_angle = ruling_angle(truth, frame, (real.col(2) - found.col(2)).mean());
+  const double offset = (real.col(2) - found.col(2)).mean();
+  measures.ruling_angle = ruling_angle(truth, frame, offset);
+  measures.guessed_off = guessed_off(truth, curves, stroke.col(0), offset);
   add_panel_areas(truth, frame, measures);
   return measures;
 }

@@ -43,6 +43,8 @@ CutMeasures cut_measures(const SketchScene& scene, const Frame& frame);
 /// Of a reconstruction from one view of a known shape; nothing elsewhere.
 struct TruthMeasures {
   std::optional<double> depth_rms, depth_max;  ///< over the height of the shape
+  /// Root mean square distance of guessed points of borders from the true ones, over the height.
+  std::optional<double> guessed_off;
   std::optional<double> reprojection;          ///< over the width of the drawing
   /// Differences of the flat panels' areas from the true ones over these: of all together, and of
   /// the panel that is farthest off. In frames with a pattern of an object with known panels.

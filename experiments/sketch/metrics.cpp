@@ -134,6 +134,10 @@ MetricGroup truth_group() {
            "without its mean, which one view cannot tell",
            kLow, {1e-4, 0.02}, &M::depth_rms)
       .row("depth_max", "1", "the largest such error", kLow, {1e-3, 0.05}, &M::depth_max)
+      .row("guessed_off", "1",
+           "root mean square distance in space of points of borders that no stroke shows from the "
+           "borders as they are, over the height of the shape",
+           kLow, {1e-4, 0.02}, &M::guessed_off)
       .row("reprojection", "1",
            "root mean square distance in the view from where the borders really are, over the "
            "width of the drawing",

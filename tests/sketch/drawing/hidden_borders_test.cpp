@@ -8,6 +8,7 @@
 
 #include "core/angles.h"
 #include "core/random.h"
+#include "experiments/sketch/measures.h"
 #include "experiments/sketch/truth/known_drawing.h"
 #include "experiments/sketch/truth/known_view.h"
 #include "solvers/sketch/drawing/border_models.h"
@@ -166,6 +167,35 @@ TEST(HiddenBorders, ArchIsContinuedByItsMirrorImage) {
   // With an occlusion the drawing says itself what is hidden.
   view.strokes.push_back({"hidden", StrokeKind::occlusion, false, {{2, 0}, {3, 0}}});
   EXPECT_THAT(complete_borders(view, plane, 0.008, Completion::all).guesses, IsEmpty());
+}
+
+// Drawn points where they are; guessed ones on the lower circle, moved along its axis by a
+// hundredth of the height, which is how far off they are.
+TEST(GuessedOff, IsTheDistanceFromTheRealBorder) {
+  SketchScene scene;
+  scene.truth = visible(KnownShape::frustum, 35, 25);
+  const SyntheticView& truth = *scene.truth;
+  const std::vector<Eigen::Vector3d>&top = truth.truth[1], &bottom = truth.borders[0];
+  Part lines;
+  lines.kind = Part::Kind::lines;
+  const auto n = static_cast<Eigen::Index>(top.size()),
+             m = static_cast<Eigen::Index>(bottom.size());
+  lines.points.resize(n + m, 3);
+  NamedArray stroke{"stroke", "1", NamedArray::On::points, Eigen::MatrixXd::Constant(n + m, 1, -1)};
+  NamedArray drawn_at{"drawn_at", "1", NamedArray::On::points, Eigen::MatrixXd::Zero(n + m, 1)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    lines.points.row(i) = top[i].transpose();
+    stroke.values(i) = 1;
+    drawn_at.values(i) = static_cast<double>(i);
+  }
+  for (Eigen::Index i = 0; i < m; ++i)
+    lines.points.row(n + i) = (bottom[i] + 0.01 * truth.height * truth.axis).transpose();
+  lines.arrays = {stroke, drawn_at};
+  Frame frame;
+  frame.parts["strokes"] = lines;
+  const TruthMeasures measures = truth_measures(scene, frame);
+  EXPECT_NEAR(measures.depth_rms.value(), 0, 1e-9);
+  EXPECT_NEAR(measures.guessed_off.value(), 0.01, 1e-5);
 }
 
 // Noise of 1 % of an arc's radius on 72 points: what is left is at most 0.6 of it.
