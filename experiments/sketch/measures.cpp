@@ -190,6 +190,13 @@ std::optional<double> guessed_off(const SyntheticView& truth, const Part& curves
 
 }  // namespace
 
+std::optional<double> surface_area_error(const SketchScene& scene, const Frame& frame) {
+  if (!scene.known_area || frame.find_part("surface") == nullptr) return {};
+  const Part& surface = frame.require_part("surface", Part::Kind::triangles);
+  const double area = triangle_areas(surface.points, surface.triangles).sum();
+  return std::abs(area - *scene.known_area) / *scene.known_area;
+}
+
 TruthMeasures truth_measures(const SketchScene& scene, const Frame& frame) {
   TruthMeasures measures;
   if (!scene.truth || frame.find_part("strokes") == nullptr) return measures;

@@ -25,6 +25,8 @@ SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& fr
 
 /// The pieces of a frame's pattern.
 std::vector<FlatPiece> flat_pieces(const Frame& frame);
+/// Relative difference of the surface's area from the known one; nothing where none is known.
+std::optional<double> surface_area_error(const SketchScene& scene, const Frame& frame);
 
 /// Of the pattern of the last frame; nothing in the others.
 struct PatternMeasures {
@@ -45,7 +47,7 @@ struct TruthMeasures {
   std::optional<double> depth_rms, depth_max;  ///< over the height of the shape
   /// Root mean square distance of guessed points of borders from the true ones, over the height.
   std::optional<double> guessed_off;
-  std::optional<double> reprojection;          ///< over the width of the drawing
+  std::optional<double> reprojection;  ///< over the width of the drawing
   /// Differences of the flat panels' areas from the true ones over these: of all together, and of
   /// the panel that is farthest off. In frames with a pattern of an object with known panels.
   std::optional<double> pattern_area, panel_area;

@@ -188,6 +188,13 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
        {"perspective", "1", "growth of the image over one diagonal of depth, as found"}});
   table.unmeasured(
+      "what the hull's sections were taken for: of known things areas are measured",
+      {{"openings", "1", "drawn borders that end tubes, of all views together"},
+       {"round_tubes", "1", "tubes with round sections that end in them"},
+       {"top_sections", "1", "share of the closed hull's area on the scaled top view's outline"},
+       {"round_sections", "1", "share on round sections"},
+       {"box_sections", "1", "share on the faces that the views see"}});
+  table.unmeasured(
       "where a texture's points came from: its picture alone is recorded",
       {{"texture_seen", "1", "share of the pattern that the photograph shows"},
        {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},

@@ -153,6 +153,13 @@ MetricGroup truth_group() {
            {1e-3, 0.05}, &M::panel_area);
 }
 
+MetricGroup area_group() {
+  return frame_metrics<SketchScene>(surface_area_error)
+      .row("surface_area_error", "1",
+           "difference of the surface's area from that of the known thing, over the latter", kLow,
+           {1e-3, 0.05}, [](const std::optional<double>& error) { return error; });
+}
+
 MetricGroup arc_group() {
   using M = ArcMeasures;
   return frame_metrics<SketchScene>(arc_measures)
@@ -227,9 +234,10 @@ MetricGroup sector_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  std::vector<MetricGroup> groups{
-      surface_group(), silhouette_group(), pattern_group(), truth_group(), cut_group(),
-      arc_group(),     layer_group(),      sector_group(),  edge_group(),  texture_group()};
+  std::vector<MetricGroup> groups{surface_group(), silhouette_group(), pattern_group(),
+                                  truth_group(),   cut_group(),        arc_group(),
+                                  layer_group(),   sector_group(),     edge_group(),
+                                  texture_group(), area_group()};
   for (MetricGroup& group : garment_metrics()) groups.push_back(std::move(group));
   for (MetricGroup& group : seam_metrics()) groups.push_back(std::move(group));
   return groups;

@@ -148,6 +148,17 @@ FrameTable sewn_table(const Pattern& pattern) {
   return table;
 }
 
+/// What the hull's sections were taken for, and how much of it.
+void note_sections(const SectionReport& sections, Frame& frame) {
+  int tubes = 0;
+  for (const SectionReport::Tubes& of_axis : sections.tubes) tubes += of_axis.count;
+  frame.diagnostics["openings"] = sections.openings;
+  frame.diagnostics["round_tubes"] = tubes;
+  frame.diagnostics["top_sections"] = sections.top_share;
+  frame.diagnostics["round_sections"] = sections.round_share;
+  frame.diagnostics["box_sections"] = sections.box_share;
+}
+
 class SketchFrames final : public FrameModel {
  public:
   SketchFrames(const SketchInput& input, int steps, const SketchMethodFactory& factory,
@@ -201,6 +212,7 @@ class SketchFrames final : public FrameModel {
     const Phase phase(context, "record");
     if (last && !input_.drawing.views.empty())
       frame.parts["drawing"] = drawing_part(input_.drawing);
+    if (number == 0 && !input_.surface) note_sections(prepared_.surface.hull.sections, frame);
     method_->diagnose(frame.diagnostics);
     method_->draw(frame);
     sink.frame(std::move(frame));

@@ -18,11 +18,15 @@ class ShownHull final : public SketchMethod {
 
 void describe(OptionVisitor& v, VisualHullOptions& o) {
   v.value("smoothed", o.smoothed, {.doc = "whether the hull is smoothed as the methods begin"});
+  v.value("boxes", o.boxes,
+          {.doc = "whether its sections are all that the views see, whatever the scene says"});
 }
 
 std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
                                                   const VisualHullOptions& options) {
-  return make_sketch_process(input, 0, [options](const PreparedSketch& prepared, RunContext&) {
+  SketchInput seen = input;
+  if (options.boxes) seen.hull.sections = HullSections::box;
+  return make_sketch_process(seen, 0, [options](const PreparedSketch& prepared, RunContext&) {
     return std::make_unique<ShownHull>(options.smoothed ? prepared.start
                                                         : prepared.surface.hull.mesh.V);
   });

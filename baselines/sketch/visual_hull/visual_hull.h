@@ -9,6 +9,7 @@ namespace geoprior::sketch {
 
 struct VisualHullOptions {
   bool smoothed = false;
+  bool boxes = false;
 };
 void describe(OptionVisitor& v, VisualHullOptions& options);
 

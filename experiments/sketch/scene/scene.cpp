@@ -10,6 +10,7 @@
 #include "experiments/sketch/drawing/view_picture.h"
 #include "experiments/sketch/fabrication/cloth_files.h"
 #include "experiments/sketch/pattern/joint_table.h"
+#include "models/sketch/sections/hull_sections.h"
 #include "testbed/formats/artifact.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
@@ -34,16 +35,25 @@ void load_surface(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.input.surface = std::move(mesh);
 }
 
+/// Silhouettes of several views, and a word on what the sections between them are taken for.
+void align_drawing(const SketchSceneOptions& o, SketchScene& scene) {
+  scene.aligned = align_views(scene.input.drawing, o.align);
+  const std::vector<OutlinedView> views = outlined_views(scene.aligned);
+  for (const OutlinedView& view : views)
+    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+  if (o.hull.sections == HullSections::automatic && views.size() > 1) {
+    const SectionBounds sections(scene.aligned, views, o.hull.sections);
+    scene.load_warnings.push_back(sections.report().text());
+  }
+}
+
 void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
                   SketchScene& scene) {
   DrawingFile read = read_drawing(find_file(o.drawing, folder, "data", "scene.drawing"), o.read);
   scene.input.drawing = std::move(read.drawing);
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
-  if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
-  scene.aligned = align_views(scene.input.drawing, o.align);
-  for (const OutlinedView& view : outlined_views(scene.aligned))
-    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+  if (scene.input.drawing.find(ViewKind::photo) == nullptr) align_drawing(o, scene);
 }
 
 /// What a known drawing shows is its truth; without a file it is drawn here.
@@ -136,6 +146,8 @@ void describe(OptionVisitor& v, SketchSceneOptions& o) {
                  {.doc = "a surface of closed form, in place of a drawing"});
   describe_group(v, "layers", o.layers,
                  {.doc = "one view of a known body of rigid layers, in place of a drawing"});
+  describe_group(v, "solid", o.solid,
+                 {.doc = "several views of a thing whose area is known, in place of a drawing"});
   describe_group(v, "known", o.known,
                  {.doc = "the known object that the drawing shows; drawn here without a file"});
   v.value("surface_scale", o.surface_scale,
@@ -197,11 +209,12 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
                                                std::uint64_t seed) {
   const bool drawn = !options.drawing.empty() || options.known;
   const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
-                    options.closed_form.has_value() + options.layers.has_value();
+                    options.closed_form.has_value() + options.layers.has_value() +
+                    options.solid.has_value();
   if (given != 1) {
     throw Error(std::to_string(given) + " of them are given",
                 "scene.drawing (or scene.known), scene.surface, scene.synthetic, "
-                "scene.closed_form and scene.layers",
+                "scene.closed_form, scene.layers and scene.solid",
                 "one");
   }
   auto scene = std::make_shared<SketchScene>();
@@ -235,6 +248,11 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     body.seed = static_cast<int>(scene_seed(seed, body.seed));
     scene->truth = synthetic_layers(body);
     scene->input.drawing = {"scene.layers", {scene->truth->view}};
+  } else if (options.solid) {
+    KnownSolid solid = known_solid(*options.solid);
+    scene->input.drawing = std::move(solid.drawing);
+    scene->known_area = solid.area;
+    align_drawing(options, *scene);
   } else if (!options.surface.empty()) {
     load_surface(options, folder, *scene);
     scene->input.patterns = false;

@@ -15,6 +15,7 @@
 #include "experiments/sketch/fabrication/textured_files.h"
 #include "experiments/sketch/truth/closed_form_surface.h"
 #include "experiments/sketch/truth/known_drawing.h"
+#include "experiments/sketch/truth/known_solid.h"
 #include "experiments/sketch/truth/synthetic_layers.h"
 #include "experiments/sketch/truth/synthetic_views.h"
 #include "metrics/contact/planar_overlap.h"
@@ -35,6 +36,7 @@ struct SketchSceneOptions {
   std::optional<ClosedFormOptions> closed_form;
   std::optional<SyntheticLayerOptions> layers;
   std::optional<KnownDrawingOptions> known;
+  std::optional<KnownSolidOptions> solid;
   DrawingFileOptions read;
   AlignOptions align;
   HullOptions hull;
@@ -59,6 +61,7 @@ class SketchScene final : public ProcessScene {
   Drawing aligned;                        ///< of several views, as methods see them
   std::optional<SyntheticView> truth;     ///< of a synthetic or known view
   std::optional<std::string> background;  ///< colour behind the object in the photograph
+  std::optional<double> known_area;       ///< of the surface that several views show (m^2)
   /// Files that are made of one view; none when empty.
   std::function<OneViewFiles(const View&, const OneViewResult&, const Pattern&)> photo_files;
 

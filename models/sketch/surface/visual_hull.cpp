@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/geometry/topology.h"
 #include "core/limits.h"
+#include "models/sketch/sections/hull_sections.h"
 #include "models/sketch/surface/collapse_edges.h"
 #include "models/sketch/surface/nets.h"
 
@@ -115,89 +116,6 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
   return f;
 }
 
-/// Where an outline meets the horizontal line at a height; at its nearest end above or below it.
-struct SectionExtent {
-  double low = 0, high = 0;
-};
-
-SectionExtent extent_at(const Outline& outline, double height) {
-  const double margin = 1e-6 * outline.diagonal();
-  const double y =
-      std::clamp(height, outline.lowest().y() + margin, outline.highest().y() - margin);
-  SectionExtent extent{std::numeric_limits<double>::infinity(),
-                       -std::numeric_limits<double>::infinity()};
-  const std::vector<Eigen::Vector2d>& p = outline.points();
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const Eigen::Vector2d &a = p[i], &b = p[(i + 1) % p.size()];
-    if ((a.y() < y) == (b.y() < y)) continue;
-    const double x = a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    extent.low = std::min(extent.low, x);
-    extent.high = std::max(extent.high, x);
-  }
-  return extent;
-}
-
-/// The outline of the top view, scaled at every height to the widths of the views from the front
-/// and from the side. Right is x in front and top; it is -z from the side, which is up in the top
-/// view.
-class TopSections {
- public:
-  explicit TopSections(const std::vector<OutlinedView>& views)
-      : front_(outline_of(views, ViewKind::front)),
-        side_(outline_of(views, ViewKind::side)),
-        top_(outline_of(views, ViewKind::top)) {}
-
-  /// Moves what is asked at one height into the top view and back.
-  struct AtHeight {
-    Eigen::Vector2d low, scale;
-  };
-  [[nodiscard]] AtHeight at(double y) const {
-    const SectionExtent x = extent_at(front_, y), z = extent_at(side_, y);
-    const Eigen::Vector2d size(x.high - x.low, z.high - z.low);
-    return {{x.low, z.low}, (top_.highest() - top_.lowest()).cwiseQuotient(size)};
-  }
-  /// Not a distance in space, but linear across a cell near the surface, which is all that surface
-  /// nets ask of it.
-  [[nodiscard]] double distance(const AtHeight& at, const Eigen::Vector2d& q) const {
-    return top_.nearest(top_.lowest() + (q - at.low).cwiseProduct(at.scale)).distance /
-           at.scale.maxCoeff();
-  }
-  /// The point moved, at its height, onto the section's outline.
-  [[nodiscard]] Eigen::Vector3d moved_on(const Eigen::Vector3d& x) const {
-    const AtHeight here = at(x.y());
-    const Eigen::Vector2d q(x.x(), -x.z());
-    const Eigen::Vector2d nearest =
-        top_.nearest(top_.lowest() + (q - here.low).cwiseProduct(here.scale)).point;
-    const Eigen::Vector2d to = here.low + (nearest - top_.lowest()).cwiseQuotient(here.scale);
-    return {to.x(), x.y(), -to.y()};
-  }
-
- private:
-  static const Outline& outline_of(const std::vector<OutlinedView>& views, ViewKind kind) {
-    const auto view = std::find_if(views.begin(), views.end(),
-                                   [&](const OutlinedView& v) { return v.kind == kind; });
-    if (view != views.end()) return view->outline;
-    throw Error(std::string("has no view ") + view_name(kind), "hull.sections = \"top\"",
-                "front, side and top");
-  }
-
-  const Outline &front_, &side_, &top_;
-};
-
-void bound_by_sections(const TopSections& sections, const HullGrid& grid, GridFunction& f) {
-  for (int j = 0; j < grid.size[1]; ++j) {
-    const TopSections::AtHeight here = sections.at(grid.origin.y() + j * grid.spacing);
-    for (int k = 0; k < grid.size[2]; ++k) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Eigen::Vector2d q(grid.origin.x() + i * grid.spacing,
-                                -(grid.origin.z() + k * grid.spacing));
-        double& value = f.values[f.index(i, j, k)];
-        value = std::max(value, sections.distance(here, q));
-      }
-    }
-  }
-}
-
 /// Arc lengths of the corners of an outline: where it turns by more than 30 degrees. Ascending.
 std::vector<double> corners_of(const Outline& outline) {
   const std::vector<Eigen::Vector2d>& p = outline.points();
@@ -216,9 +134,9 @@ std::vector<double> corners_of(const Outline& outline) {
 /// between them, exactly.
 class SilhouetteFit {
  public:
-  SilhouetteFit(const std::vector<OutlinedView>& views, double spacing, HullSections sections)
-      : views_(views), same_(0.02 * spacing) {
-    if (sections == HullSections::top) sections_.emplace(views);
+  SilhouetteFit(const std::vector<OutlinedView>& views, double spacing,
+                const SectionBounds& sections)
+      : views_(views), spacing_(spacing), same_(0.02 * spacing), sections_(sections) {
     for (const OutlinedView& view : views) corners_.push_back(corners_of(view.outline));
   }
 
@@ -239,7 +157,7 @@ class SilhouetteFit {
                                        : outline.at(nearest_corner(v, outline.nearest(q)));
         x += views_[v].frame.topRows<2>().transpose() * (to - q);
       }
-      if (on_section) x = sections_->moved_on(x);
+      if (on_section) x = sections_.moved_on(x, spacing_);
     }
     return inside(x);
   }
@@ -254,7 +172,7 @@ class SilhouetteFit {
       nearest.push_back(view.outline.nearest(view.project(x)));
       outermost = std::max(outermost, nearest.back().distance);
     }
-    if (sections_ && outermost < -same_) return false;
+    if (!sections_.empty() && outermost < -same_) return false;
     for (std::size_t v = 0; v < views_.size(); ++v) {
       if (nearest[v].distance < outermost - same_) continue;
       const std::vector<double>& corners = corners_[v];
@@ -291,12 +209,13 @@ class SilhouetteFit {
 
   const std::vector<OutlinedView>& views_;
   std::vector<std::vector<double>> corners_;  ///< of each view
+  double spacing_;                            ///< m
   double same_;  ///< difference of distances at which two views see the same face (m)
-  std::optional<TopSections> sections_;  ///< where the hull has them
+  const SectionBounds& sections_;
 };
 
 void fit_to_silhouettes(QuadMesh& nets, const std::vector<OutlinedView>& views, double spacing,
-                        HullSections sections) {
+                        const SectionBounds& sections) {
   const SilhouetteFit fit(views, spacing, sections);
   for (Eigen::Index v = 0; v < nets.V.rows(); ++v) {
     nets.V.row(v) = fit.fitted(nets.V.row(v).transpose(), nets.crossings[v]).transpose();
@@ -331,14 +250,14 @@ std::vector<std::optional<SilhouettePlace>> places_on(const OutlinedView& view,
 
 /// Nets at a spacing, on shifted grids until they are a manifold.
 QuadMesh manifold_nets(const std::vector<OutlinedView>& views, const HullBox& box, double spacing,
-                       HullSections sections) {
+                       const SectionBounds& sections) {
   constexpr int kAttempts = 6;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const HullGrid grid = grid_over(box, spacing, attempt);
     require_memory(8.0 * grid.size[0] * grid.size[1] * grid.size[2], 1, "grid of the hull",
                    "hull.triangles");
     GridFunction f = hull_function(views, grid);
-    if (sections == HullSections::top) bound_by_sections(TopSections(views), grid, f);
+    sections.bound(f);
     QuadMesh quads = surface_nets(f);
     if (!quads.quads.empty() && non_manifold_edges(split_quads(quads).F).empty()) return quads;
   }
@@ -346,15 +265,29 @@ QuadMesh manifold_nets(const std::vector<OutlinedView>& views, const HullBox& bo
               "visual hull", "more triangles");
 }
 
+/// Shares of the surface's area that lie on the outlines of sections, and on the views' faces.
+void measure_shares(VisualHull& hull, const SectionBounds& sections) {
+  if (sections.empty()) return;
+  const Eigen::VectorXd areas = triangle_areas(hull.mesh.V, hull.mesh.F);
+  double on = 0;
+  for (Eigen::Index t = 0; t < hull.mesh.F.rows(); ++t) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) middle += hull.mesh.V.row(hull.mesh.F(t, k)).transpose() / 3;
+    if (sections.value(middle) > -0.2 * hull.spacing) on += areas[t];
+  }
+  (hull.sections.from_top ? hull.sections.top_share : hull.sections.round_share) = on / areas.sum();
+  hull.sections.box_share = 1 - on / areas.sum();
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, HullOptions& o) {
-  static constexpr std::array<std::string_view, 2> kSections{"views", "top"};
+  static constexpr std::array<std::string_view, 3> kSections{"auto", "box", "top"};
   v.value("triangles", o.triangles,
           {.doc = "number of triangles that the hull is aimed at", .min = 100, .max = 1e7});
   describe_choice(v, "sections", o.sections, kSections,
-                  {.doc = "horizontal sections: what the views see, or the top view's outline "
-                          "scaled to front and side"});
+                  {.doc = "sections of the hull: decided by what is drawn, all that the views see, "
+                          "or the top view's outline scaled to front and side"});
 }
 
 std::vector<OutlinedView> outlined_views(const Drawing& aligned) {
@@ -381,15 +314,18 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
     throw Error("the views have no point in common", aligned.name);
   // The number of triangles goes with the inverse square of the spacing: one coarse mesh tells it.
   const double coarse = (box.high - box.low).norm() / 48;
-  const QuadMesh trial = manifold_nets(hull.views, box, coarse, options.sections);
+  const SectionBounds sections(aligned, hull.views, options.sections);
+  const QuadMesh trial = manifold_nets(hull.views, box, coarse, sections);
   hull.spacing =
       coarse * std::sqrt(2.0 * static_cast<double>(trial.quads.size()) / options.triangles);
-  QuadMesh quads = manifold_nets(hull.views, box, hull.spacing, options.sections);
-  fit_to_silhouettes(quads, hull.views, hull.spacing, options.sections);
+  QuadMesh quads = manifold_nets(hull.views, box, hull.spacing, sections);
+  fit_to_silhouettes(quads, hull.views, hull.spacing, sections);
   hull.mesh = split_quads(quads);
   // Several vertices of the nets may have gone to one corner.
   collapse_short_edges(hull.mesh, 0.01 * hull.spacing);
   place_on_silhouettes(hull);
+  hull.sections = sections.report();
+  measure_shares(hull, sections);
   return hull;
 }
 

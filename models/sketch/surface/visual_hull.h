@@ -8,18 +8,20 @@
 #include "core/options.h"
 #include "models/sketch/drawing/drawing.h"
 #include "models/sketch/drawing/outline.h"
+#include "models/sketch/sections/section_report.h"
 
 namespace geoprior::sketch {
 
-/// What a horizontal section of the hull is.
+/// What a section of the hull is.
 enum class HullSections {
-  views,  ///< all that the views see: a rectangle, where the top view does not cut it
-  top,    ///< the outline of the top view, scaled to the widths of front and side at that height
+  automatic,  ///< by what is drawn, see sections/hull_sections.h
+  box,        ///< all that the views see: a rectangle, where the third view does not cut it
+  top,        ///< the outline of the top view, scaled to the widths of front and side at a height
 };
 
 struct HullOptions {
   int triangles = 8000;
-  HullSections sections = HullSections::views;
+  HullSections sections = HullSections::automatic;
 };
 void describe(OptionVisitor& v, HullOptions& options);
 
@@ -47,6 +49,7 @@ struct VisualHull {
   /// A row a view: where each vertex lies on its silhouette; nothing for vertices that do not.
   std::vector<std::vector<std::optional<SilhouettePlace>>> places;
   double spacing = 0;  ///< of the grid that it was meshed on: about the length of an edge (m)
+  SectionReport sections;
 };
 
 /// Views other than `photo`, with their silhouettes as outlines.
@@ -61,8 +64,7 @@ std::vector<OutlinedView> outlined_views(const Drawing& aligned);
 /// Its error against the drawing is that of chords of the length of an edge.
 ///
 /// Nothing of a drawing says how wide a hat's crown is seen from above, where the brim hides it:
-/// the hull of the views is a box there. `HullSections::top` takes the outline of the top view for
-/// every height, so that a round hat is round; parts of one height that are apart are not.
+/// the hull of the views is a box there. What sections are instead is `SectionBounds`'s to decide.
 /// @param aligned  of `align_views`: at least two views that are not `photo`
 /// @throws Error   with fewer views; when the views have no point in common; when parts are thinner
 ///                 than the grid; on sections `top` without all three views

@@ -123,7 +123,7 @@ TEST(HullSections, OfTheTopViewAreRoundWhereItIsRound) {
     return most;
   };
   EXPECT_LT(worst(HullSections::top), 2e-4);    // chords of the outline and of the grid
-  EXPECT_GT(worst(HullSections::views), 0.01);  // sqrt 2 times the radius at the top, less
+  EXPECT_GT(worst(HullSections::box), 0.01);  // sqrt 2 times the radius at the top, less
 }
 
 }  // namespace

@@ -1,0 +1,344 @@
+#include "models/sketch/sections/tube_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace geoprior::sketch {
+namespace {
+
+constexpr int kSectionSamples = 400;
+constexpr double kVisibleShare = 0.6;  ///< of the widest part, from which a part is seen beside it
+
+double half_width(const Slice& s) { return std::max(0.5 * s.width(), 1e-12); }
+
+int quadrant(double u, double v) { return (u > 0 ? 1 : 0) + (v > 0 ? 2 : 0); }
+
+/// (|u|^n + |v|^n)^(1/n) without overflow.
+double superellipse_norm(double u, double v, double n) {
+  const double large = std::max(std::abs(u), std::abs(v));
+  const double small = std::min(std::abs(u), std::abs(v));
+  if (large == 0) return 0;
+  return large * std::pow(1 + std::pow(small / large, n), 1 / n);
+}
+
+/// The exponent whose superellipse passes through a point of the box, by bisection.
+double exponent_through(double u, double v) {
+  double low = 1, high = 4 * kBoxExponent;
+  if (superellipse_norm(u, v, high) > 1) return std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (superellipse_norm(u, v, middle) > 1 ? low : high) = middle;
+  }
+  return high;
+}
+
+/// How far a place is outside of a slice; negative inside.
+double outside(const Slice& s, double x) { return std::max(s.low - x, x - s.high); }
+
+/// The other width of a part that is hidden: of a circular tube that is tilted as its middle runs.
+Slice circular(const Slice& own, const Slice& seen) {
+  const double tilt = 0.5 * (own.low_slope + own.high_slope);
+  const double half = 0.5 * std::min(own.width() / std::sqrt(1 + tilt * tilt), seen.width());
+  return {seen.middle() - half, seen.middle() + half, seen.low_slope, seen.high_slope};
+}
+
+Slice between(const Slice& a, const Slice& b, double share) {
+  return {a.low + share * (b.low - a.low), a.high + share * (b.high - a.high), a.low_slope,
+          a.high_slope};
+}
+
+double widest_of(const std::vector<Slice>& slices) {
+  double most = 0;
+  for (const Slice& s : slices) most = std::max(most, s.width());
+  return most;
+}
+
+}  // namespace
+
+double TubeSection::value(double p, double q) const {
+  const SectionPart* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const SectionPart& part : parts) {
+    const double away = std::max(0.0, outside(part.p, p)) + std::max(0.0, outside(part.q, q));
+    if (away >= least) continue;
+    least = away;
+    nearest = &part;
+  }
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  if (nearest == nullptr || nearest->round <= 0 || nearest->tube < 0) return kNone;
+  const double a = half_width(nearest->p), b = half_width(nearest->q);
+  const double u = (p - nearest->p.middle()) / a, v = (q - nearest->q.middle()) / b;
+  const double n = exponents[nearest->tube][quadrant(u, v)] / nearest->round;
+  if (n > kBoxExponent && !nearest->hidden) return kNone;
+  return (superellipse_norm(u, v, std::min(n, 4 * kBoxExponent)) - 1) * std::min(a, b);
+}
+
+const OutlinedView& TubeSections::showing(const std::vector<OutlinedView>& views, int axis,
+                                          int nth) {
+  for (const OutlinedView& view : views) {
+    const bool shows =
+        view_axis(view.frame, 0).axis == axis || view_axis(view.frame, 1).axis == axis;
+    if (shows && nth-- == 0) return view;
+  }
+  return views.front();
+}
+
+namespace {
+
+/// Numbers of the views that show an axis, in their order; then of those that look along it.
+std::pair<std::vector<int>, std::vector<int>> views_by_axis(const std::vector<OutlinedView>& views,
+                                                            int axis) {
+  std::pair<std::vector<int>, std::vector<int>> by;
+  for (int v = 0; v < std::ssize(views); ++v) {
+    const bool shows =
+        view_axis(views[v].frame, 0).axis == axis || view_axis(views[v].frame, 1).axis == axis;
+    (shows ? by.first : by.second).push_back(v);
+  }
+  return by;
+}
+
+}  // namespace
+
+TubeSections::TubeSections(const std::vector<OutlinedView>& views, const std::vector<Rim>& rims,
+                           int axis)
+    : axis_(axis),
+      first_(showing(views, axis, 0), axis, rims, views_by_axis(views, axis).first.front()) {
+  const auto [showing_it, along_it] = views_by_axis(views, axis);
+  if (showing_it.size() > 1) second_.emplace(views[showing_it[1]], axis, rims, showing_it[1]);
+  if (!along_it.empty()) {
+    end_view_ = &views[along_it.front()];
+    end_.emplace(*end_view_, first_.across());
+  }
+  second_axis_ = 3 - axis - first_.across();
+  start_ = first_.first();
+  double end = first_.last();
+  if (second_) {
+    start_ = std::max(start_, second_->first());
+    end = std::min(end, second_->last());
+  }
+  step_ = (end - start_) / kSectionSamples;
+  for (int i = 0; i < kSectionSamples; ++i)
+    samples_.push_back(parts_at(start_ + (i + 0.5) * step_));
+  for (const Rim& rim : rims) {
+    if (rim.axis != axis) continue;
+    exponents_.push_back({2, 2, 2, 2});
+    // In the view that the rim was drawn in, its part is the one that it spans.
+    Rim spanning = rim;
+    const OutlinedView& view = views[rim.view];
+    const int c = view_axis(view.frame, 0).axis == axis ? 0 : 1;
+    for (Eigen::Vector2d& x : spanning.points)
+      x = {view_axis(view.frame, c).sign * x[c], view_axis(view.frame, 1 - c).sign * x[1 - c]};
+    spanning.outward = {view_axis(view.frame, c).sign * rim.outward[c], 0};
+    spanning.axis = view_axis(view.frame, 1 - c).axis;
+    track(spanning, static_cast<int>(exponents_.size()) - 1);
+  }
+  if (end_) fill_end_view();
+  end_view_ = nullptr;
+}
+
+int TubeSections::tubes() const {
+  std::set<int> used;
+  for (const std::vector<SectionPart>& parts : samples_) {
+    for (const SectionPart& part : parts) {
+      if (part.tube >= 0) used.insert(part.tube);
+    }
+  }
+  return static_cast<int>(used.size());
+}
+
+Slice TubeSections::widest_from_end(double p) const {
+  Slice widest;
+  for (const Slice& s : end_->at(p)) {
+    if (s.width() > widest.width()) widest = s;
+  }
+  return widest;
+}
+
+std::vector<SectionPart> TubeSections::parts_at(double along) const {
+  std::vector<SectionPart> parts;
+  const std::vector<Slice> p = first_.at(along);
+  if (!second_) {
+    for (const Slice& s : p) {
+      const Slice seen = widest_from_end(s.middle());
+      parts.push_back({s, circular(s, seen), s, seen, true});
+    }
+    return parts;
+  }
+  const std::vector<Slice> q = second_->at(along);
+  const double widest_p = kVisibleShare * widest_of(p), widest_q = kVisibleShare * widest_of(q);
+  if (p.size() > 1 && q.size() > 1) return parts;
+  for (const Slice& a : p) {
+    for (const Slice& b : q) {
+      SectionPart part{a, b, a, b};
+      part.hidden = a.width() < widest_p || b.width() < widest_q;
+      if (a.width() < widest_p) part.q = circular(a, b);
+      if (b.width() < widest_q) part.p = circular(b, a);
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+const SectionPart* TubeSections::part_like(const SectionPart& part, int sample) const {
+  const SectionPart* like = nullptr;
+  double most = 0;
+  for (const SectionPart& other : samples_[std::clamp(sample, 0, kSectionSamples - 1)]) {
+    const double shared = std::min(other.p.overlap(part.p) / half_width(part.p),
+                                   other.q.overlap(part.q) / half_width(part.q));
+    if (shared <= most) continue;
+    most = shared;
+    like = &other;
+  }
+  return like;
+}
+
+TubeSection TubeSections::at(double along) const {
+  TubeSection section{parts_at(along), exponents_};
+  const double place = (along - start_) / step_ - 0.5;
+  const int below = static_cast<int>(std::floor(std::clamp(place, -1.0, 1.0 * kSectionSamples)));
+  const double share = std::clamp(place - below, 0.0, 1.0);
+  for (SectionPart& part : section.parts) {
+    const SectionPart* before = part_like(part, below);
+    const SectionPart* after = part_like(part, below + 1);
+    if (before != nullptr) part.round += (1 - share) * before->round;
+    if (after != nullptr) part.round += share * after->round;
+    if (after != nullptr && after->tube >= 0) part.tube = after->tube;
+    if (before != nullptr && before->tube >= 0) part.tube = before->tube;
+    part.p = between(part.p_seen, part.p, part.round);
+    part.q = between(part.q_seen, part.q, part.round);
+  }
+  return section;
+}
+
+double TubeSections::value(const Eigen::Vector3d& x) const {
+  return at(x[axis_]).value(x[first_across()], x[second_across()]);
+}
+
+bool TubeSections::widens(const std::vector<Node>& path, const SectionPart& next) const {
+  constexpr double kSteepest = 2.25, kWindow = 0.12, kAllowed = 0.03;
+  const auto grows = [&](const Slice& from, const Slice& to, double way, double width) {
+    const double allowed = kSteepest * way + kAllowed * width;
+    return from.low - to.low > allowed || to.high - from.high > allowed;
+  };
+  for (int back = 1; back <= std::ssize(path); ++back) {
+    const Node& node = path[path.size() - back];
+    const SectionPart& from = samples_[node.at][node.part];
+    const double way = back * step_, width = std::max(from.p.width(), from.q.width());
+    if (back > 1 && way > kWindow * width) break;
+    if (grows(from.p, next.p, way, width)) return true;
+    if (!from.hidden && !next.hidden && grows(from.q, next.q, way, width)) return true;
+  }
+  return false;
+}
+
+std::optional<TubeSections::Node> TubeSections::start_of(const Rim& rim) const {
+  const double out = rim.outward.x() < 0 ? -1 : 1;
+  double most = -std::numeric_limits<double>::infinity();
+  Slice span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Eigen::Vector2d& x : rim.points) {
+    most = std::max(most, out * x.x());
+    span.low = std::min(span.low, x.y());
+    span.high = std::max(span.high, x.y());
+  }
+  const double place = (out * most - start_) / step_ - 0.5 * out;
+  Node node{std::clamp(static_cast<int>(std::floor(place)), 0, kSectionSamples - 1), -1};
+  double shared = 0;
+  for (std::size_t i = 0; i < samples_[node.at].size(); ++i) {
+    const SectionPart& part = samples_[node.at][i];
+    const double overlap = (rim.axis == first_.across() ? part.p : part.q).overlap(span);
+    if (overlap <= shared) continue;
+    shared = overlap;
+    node.part = static_cast<int>(i);
+  }
+  if (node.part < 0) return {};
+  return node;
+}
+
+void TubeSections::track(const Rim& rim, int tube) {
+  const std::optional<Node> start = start_of(rim);
+  if (!start) return;
+  const int step = rim.outward.x() < 0 ? 1 : -1;
+  std::vector<std::vector<Node>> paths{{*start}};
+  while (!paths.empty()) {
+    std::vector<Node> path = std::move(paths.back());
+    paths.pop_back();
+    bool is_stopped = false;
+    while (true) {
+      const Node& last = path.back();
+      const int next = last.at + step;
+      if (next < 0 || next >= kSectionSamples) break;
+      const SectionPart& part = samples_[last.at][last.part];
+      std::vector<Node> onward;
+      for (int i = 0; i < std::ssize(samples_[next]); ++i) {
+        const SectionPart& other = samples_[next][i];
+        if (other.p.overlap(part.p) > 0 && other.q.overlap(part.q) > 0) {
+          onward.push_back({next, i});
+          if (widens(path, other)) is_stopped = true;
+        }
+      }
+      if (onward.empty() || is_stopped) {
+        is_stopped = is_stopped || samples_[next].empty();
+        break;
+      }
+      for (std::size_t i = 1; i < onward.size(); ++i) {
+        paths.push_back(path);
+        paths.back().push_back(onward[i]);
+      }
+      path.push_back(onward[0]);
+    }
+    mark(path, is_stopped, tube);
+  }
+}
+
+void TubeSections::mark(const std::vector<Node>& path, bool is_stopped, int tube) {
+  const SectionPart& last = samples_[path.back().at][path.back().part];
+  const double blend = std::min(0.25 * std::max(last.p.width(), last.q.width()),
+                                0.5 * step_ * static_cast<double>(path.size()));
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    SectionPart& part = samples_[path[i].at][path[i].part];
+    const double to_end = step_ * static_cast<double>(path.size() - 1 - i);
+    part.round = std::max(part.round, is_stopped ? std::min(1.0, to_end / blend) : 1.0);
+    if (part.tube < 0) part.tube = tube;
+  }
+}
+
+void TubeSections::fill_end_view() {
+  const int p = view_axis(end_view_->frame, 0).axis == first_.across() ? 0 : 1;
+  const ViewAxis to_p = view_axis(end_view_->frame, p), to_q = view_axis(end_view_->frame, 1 - p);
+  const Outline& outline = end_view_->outline;
+  constexpr int kPlaces = 512;
+  const double inset = 0.002 * outline.diagonal();
+  for (int i = 0; i < kPlaces; ++i) {
+    const Eigen::Vector2d on = outline.at(outline.length() * (i + 0.5) / kPlaces);
+    const Eigen::Vector2d seen = on - inset * outline.nearest(on).normal;
+    fill({to_p.sign * seen[p], to_q.sign * seen[1 - p]});
+  }
+}
+
+/// Raises the exponent of the tube that has to grow least so that a section has the point in it.
+void TubeSections::fill(const Eigen::Vector2d& seen) {
+  double least = std::numeric_limits<double>::infinity();
+  int tube = -1, where = 0;
+  for (int k = 0; k < kSectionSamples; k += 2) {
+    if (samples_[k].empty()) continue;
+    for (const SectionPart& part : samples_[k]) {
+      if (outside(part.p, seen.x()) > 0 || outside(part.q, seen.y()) > 0) continue;
+      if (part.round < 0.3) return;
+      const double u = (seen.x() - part.p.middle()) / half_width(part.p);
+      const double v = (seen.y() - part.q.middle()) / half_width(part.q);
+      const double n = exponent_through(u, v) * part.round;
+      if (n <= exponents_[part.tube][quadrant(u, v)]) return;
+      if (n >= least) continue;
+      least = n;
+      tube = part.tube;
+      where = quadrant(u, v);
+    }
+  }
+  if (tube >= 0) exponents_[tube][where] = least;
+}
+
+}  // namespace geoprior::sketch
