@@ -22,6 +22,7 @@ Topic make_topic() {
   topic.files = {drawing_keys()};
   topic.told_files = {"pattern-verdict.txt"};
   topic.commands = {sketch_command()};
+  topic.files = {drawing_keys(), stroke_keys()};
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};
   topic.view.shading = FigureView::Shading::flat;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "experiments/sketch/drawing/drawn_stroke.h"
+#include "experiments/sketch/drawing/hand_drawn.h"
 #include "experiments/sketch/drawing/silhouette_loops.h"
 #include "experiments/sketch/drawing/stroke_kinds.h"
 #include "experiments/sketch/drawing/view_layers.h"
@@ -75,7 +76,7 @@ class DrawingReader {
     }
   }
 
-  [[nodiscard]] View view_of(ViewKind kind, std::vector<DrawnStroke> lines) const {
+  [[nodiscard]] View view_of(ViewKind kind, std::vector<DrawnStroke> lines) {
     View view;
     view.kind = kind;
     if (lines.empty())
@@ -83,21 +84,45 @@ class DrawingReader {
                   "lines whose colour, class or data-kind says what they mean");
     require_count(static_cast<double>(lines.size()), "strokes", kMostViewStrokes,
                   document_.name + ": view:" + view_name(kind));
-    const double snap = options_.snap * diagonal(lines);
+    const double size = diagonal(lines);
+    if (options_.tremor) add_tremor(lines, size);
+    const HandDrawnView hand(document_.name + ": view:" + view_name(kind), size, options_.hand,
+                             result_.warnings);
     std::vector<DrawnStroke> silhouettes;
     for (DrawnStroke& line : lines) {
-      clean(line, snap);
+      clean(line, std::min(kExactSnap, options_.hand.snap) * size);
       if (line.stroke.kind == StrokeKind::silhouette && kind != ViewKind::photo) {
         silhouettes.push_back(std::move(line));
       } else {
         view.strokes.push_back(std::move(line.stroke));
       }
     }
-    std::vector<Stroke> loops = closed_silhouettes(silhouettes, kind, snap);
+    std::vector<Stroke> loops = closed_silhouettes(silhouettes, kind, hand, size);
+    for (Stroke& stroke : view.strokes) {
+      if (!is_curve(stroke.kind)) continue;
+      hand.fair(stroke);
+      if (stroke.kind == StrokeKind::border && !stroke.inside && loops.size() == 1)
+        hand.lay_on_silhouette(stroke, loops[0]);
+    }
     view.strokes.insert(view.strokes.begin(), std::make_move_iterator(loops.begin()),
                         std::make_move_iterator(loops.end()));
     require_plane_vectors(view);
     return view;
+  }
+
+  /// Strokes that a hand draws as curves; others are straight lines, or fitted anyway.
+  static bool is_curve(StrokeKind kind) {
+    return kind == StrokeKind::silhouette || kind == StrokeKind::border ||
+           kind == StrokeKind::seam || kind == StrokeKind::fold;
+  }
+
+  void add_tremor(std::vector<DrawnStroke>& lines, double size) const {
+    for (DrawnStroke& line : lines) {
+      if (is_curve(line.stroke.kind)) {
+        line.stroke = with_tremor(line.stroke, size, *options_.tremor,
+                                  static_cast<std::uint64_t>(options_.tremor->seed));
+      }
+    }
   }
 
   static double diagonal(const std::vector<DrawnStroke>& lines) {
@@ -134,10 +159,11 @@ class DrawingReader {
   }
 
   [[nodiscard]] std::vector<Stroke> closed_silhouettes(const std::vector<DrawnStroke>& lines,
-                                                       ViewKind kind, double snap) const {
+                                                       ViewKind kind, const HandDrawnView& hand,
+                                                       double size) const {
     std::vector<Stroke> strokes;
     for (const DrawnStroke& line : lines) strokes.push_back(line.stroke);
-    SilhouetteLoops joined = join_silhouettes(strokes, snap);
+    SilhouetteLoops joined = hand.silhouettes(strokes);
     const std::string where = document_.name + ": view:" + view_name(kind) + ": ";
     if (joined.gap) {
       const SilhouetteGap& gap = *joined.gap;
@@ -146,7 +172,8 @@ class DrawingReader {
                       place_text(gap.end) + " the nearest end is that of '" + gap.to + "' at " +
                       place_text(gap.next) + ", a gap of " + millimetres(width) + kFromCorner,
                   place_of_stroke(lines, gap.from, where),
-                  "a closed line, with gaps of at most " + millimetres(snap));
+                  "a closed line, with gaps of at most " + millimetres(options_.hand.snap * size) +
+                      "; scene.read.snap allows wider ones");
     }
     for (const Stroke& loop : joined.loops) {
       if (loop.points.size() < 3) {
@@ -212,6 +239,15 @@ class DrawingReader {
     }
   }
 
+  /// ", some in layers 'a', 'b', whose names are no view's".
+  static std::string in_layers(const std::vector<std::string>& names) {
+    std::string list;
+    constexpr std::size_t kMost = 10;
+    for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
+      list += (list.empty() ? "" : ", ") + names[i];
+    return list.empty() ? "" : "; layers of no view: " + list;
+  }
+
   template <class Add>
   void warn_of_clips(const Add& add) const {
     constexpr std::size_t kMost = 20;
@@ -228,7 +264,10 @@ class DrawingReader {
       result_.warnings.push_back(document_.name + ": " + text);
     };
     warn_of_clips(add);
-    if (outside_ > 0) add(std::to_string(outside_) + " shapes outside of the views are left out");
+    if (outside_ > 0) {
+      add(std::to_string(outside_) + " shapes outside of the views are left out" +
+          in_layers(layers_.unread));
+    }
     if (without_stroke_ > 0) {
       add(std::to_string(without_stroke_) +
           " shapes of the views have no stroke, and are left out");
@@ -258,10 +297,23 @@ void describe(OptionVisitor& v, DrawingFileOptions& options) {
           {.doc = "metres for one unit of the drawing; absent: what the file says",
            .unit = "m",
            .min = kSmallest});
-  v.value("snap", options.snap,
-          {.doc = "largest gap of a line that is closed, over the diagonal of the view",
+  v.value(
+      "snap", options.hand.snap,
+      {.doc = "largest gap of a silhouette that is closed, and distance of a line that was drawn "
+              "twice, over the diagonal of the view",
+       .min = 0,
+       .max = 0.1});
+  v.value("fairing", options.hand.fairing,
+          {.doc = "whether the tremor of a hand is taken off strokes"});
+  v.value("noise", options.hand.noise,
+          {.doc = "largest standard deviation of a tremor that is taken off, over the diagonal of "
+                  "the view",
            .min = 0,
            .max = 0.1});
+  describe_group(
+      v, "tremor", options.tremor,
+      {.doc = "tremor that is added to the drawing's curves; the drawing as it is in the "
+              "file is what silhouettes are measured against"});
 }
 
 DrawingFile read_drawing(const std::filesystem::path& file, const DrawingFileOptions& options) {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/options.h"
+#include "experiments/sketch/drawing/hand_drawn.h"
 #include "models/sketch/drawing/drawing.h"
+#include "models/sketch/drawing/tremor.h"
 
 namespace geoprior::sketch {
 
@@ -14,7 +16,8 @@ namespace geoprior::sketch {
 struct DrawingFileOptions {
   double tolerance = 1e-4;
   std::optional<double> unit_m;
-  double snap = 0.005;
+  HandDrawnOptions hand;
+  std::optional<TremorOptions> tremor;
 };
 void describe(OptionVisitor& v, DrawingFileOptions& options);
 
@@ -39,7 +42,9 @@ inline constexpr int kMostViewStrokes = 5000;
 /// - Points that coincide with the one before are left out; lines that end near their start are
 ///   closed (not pairs, plane vectors and rulings).
 /// - Silhouettes of orthogonal views are joined from open strokes, are closed, simple and
-///   counter-clockwise. In a photo a silhouette is a ruling and stays as it was drawn.
+///   counter-clockwise. What was drawn by hand is put right, with a warning that says what was
+///   moved by how much (`HandDrawnView`): gaps, double lines, tremor, borders beside the
+///   silhouette. In a photo a silhouette is a ruling and stays as it was drawn.
 /// - Pairs and plane vectors are two points.
 /// - A picture (PNG, JPEG; beside the file or embedded) has the place where it is seen.
 ///

@@ -35,6 +35,7 @@ class SilhouetteChain {
       const Stroke& next = own ? chain_ : open_[nearest];
       const Eigen::Vector2d target = at_its_end ? next.points.back() : next.points.front();
       if ((target - end).norm() > snap_) return SilhouetteGap{last_, next.id, end, target};
+      if (end != target) closed_.push_back({last_, next.id, end, target});
       chain_.points.back() = (end + target) / 2;
       if (own) {
         chain_.points.front() = chain_.points.back();
@@ -47,6 +48,7 @@ class SilhouetteChain {
   }
 
   Stroke take() { return std::move(chain_); }
+  [[nodiscard]] const std::vector<SilhouetteGap>& closed() const { return closed_; }
 
  private:
   /// Which stroke, `open_.size()` for the chain itself, and whether its last point.
@@ -81,6 +83,7 @@ class SilhouetteChain {
 
   Stroke chain_;
   std::string last_;  ///< id of the stroke at its end
+  std::vector<SilhouetteGap> closed_;
   double length_;
   std::vector<Stroke>& open_;
   double snap_;
@@ -150,6 +153,7 @@ SilhouetteLoops join_silhouettes(std::span<const Stroke> strokes, double snap) {
     open.erase(open.begin());
     SilhouetteChain chain(std::move(first), open, snap);
     result.gap = chain.close();
+    result.closed.insert(result.closed.end(), chain.closed().begin(), chain.closed().end());
     if (!result.gap) result.loops.push_back(chain.take());
   }
   for (Stroke& loop : result.loops) {

@@ -19,8 +19,9 @@ struct SilhouetteGap {
 
 /// Silhouettes as closed loops, and the gap that keeps them from being so.
 struct SilhouetteLoops {
-  std::vector<Stroke> loops;         ///< counter-clockwise; those that were closed come first
-  std::optional<SilhouetteGap> gap;  ///< then `loops` is not complete
+  std::vector<Stroke> loops;          ///< counter-clockwise; those that were closed come first
+  std::optional<SilhouetteGap> gap;   ///< then `loops` is not complete
+  std::vector<SilhouetteGap> closed;  ///< gaps that were
 };
 
 /// Joins open strokes end to end into closed ones, whichever way each was drawn. From an end the

@@ -139,4 +139,14 @@ TopicFile drawing_keys() {
   return file;
 }
 
+TopicFile stroke_keys() {
+  TopicFile file = drawing_keys();
+  file.name = "stroke";
+  file.summary =
+      "kinds of strokes of a drawing, by data-kind, class or colour, and what each means";
+  file.table = "data-kind";
+  file.keys.resize(kind_table().size());
+  return file;
+}
+
 }  // namespace geoprior::sketch

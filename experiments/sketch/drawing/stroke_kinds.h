@@ -41,5 +41,7 @@ std::string stroke_kind_colours();
 
 /// The file format, for `geoprior describe`.
 TopicFile drawing_keys();
+/// Its strokes alone: what a kind is called and coloured.
+TopicFile stroke_keys();
 
 }  // namespace geoprior::sketch

@@ -8,6 +8,8 @@
 
 #include "core/error.h"
 #include "core/geometry/topology.h"
+#include "core/random.h"
+#include "experiments/sketch/drawing/drawing_checks.h"
 #include "experiments/sketch/drawing/picture_file.h"
 #include "experiments/sketch/drawing/view_picture.h"
 #include "experiments/sketch/fabrication/cloth_files.h"
@@ -50,8 +52,11 @@ void align_drawing(const SketchSceneOptions& o, SketchScene& scene) {
 }
 
 void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
-                  SketchScene& scene) {
-  DrawingFile read = read_drawing(find_file(o.drawing, folder, "data", "scene.drawing"), o.read);
+                  std::uint64_t seed, SketchScene& scene) {
+  const std::filesystem::path file = find_file(o.drawing, folder, "data", "scene.drawing");
+  DrawingFileOptions how = o.read;
+  if (how.tremor) how.tremor->seed = static_cast<int>(scene_seed(seed, how.tremor->seed));
+  DrawingFile read = read_drawing(file, how);
   scene.input.drawing = std::move(read.drawing);
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
@@ -62,8 +67,14 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.input_files.push_back(photo);
   }
   if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
-  scene.aligned = align_views(scene.input.drawing, o.align);
-  for (const OutlinedView& view : outlined_views(scene.aligned))
+  scene.aligned = align_views(scene.input.drawing, o.align, &scene.load_warnings);
+  for (std::string& doubt : doubtful_views(scene.aligned))
+    scene.load_warnings.push_back(std::move(doubt));
+  // What a trembling hand meant is what the surface is measured against.
+  how.tremor.reset();
+  const Drawing meant =
+      o.read.tremor ? align_views(read_drawing(file, how).drawing, o.align) : scene.aligned;
+  for (const OutlinedView& view : outlined_views(meant))
     scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
 }
 
@@ -281,7 +292,7 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
     load_surface(options, folder, *scene);
     scene->input.patterns = false;
   } else if (!options.drawing.empty()) {
-    load_drawing(options, folder, *scene);
+    load_drawing(options, folder, seed, *scene);
     if (options.textures && scene->input.drawing.find(ViewKind::photo) != nullptr)
       require_picture(*scene);
   }

@@ -43,6 +43,17 @@ std::string percent(double ratio) {
   return text.data();
 }
 
+/// What was done to a view that was drawn larger or smaller than another.
+std::string scaling_text(const std::string& drawing, ViewKind view, int axis,
+                         const AxisExtent& known, double size) {
+  std::array<char, 64> change;
+  std::snprintf(change.data(), change.size(), "%.2g mm (%.1f %%)", 1e3 * (known.size - size),
+                100 * (known.size / size - 1));
+  return drawing + ": view:" + view_name(view) + ": its extent along " + "xyz"[axis] +
+         " differs from that in view:" + view_name(known.view) +
+         ": all its strokes are scaled by " + change.data();
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, AlignOptions& o) {
@@ -52,7 +63,8 @@ void describe(OptionVisitor& v, AlignOptions& o) {
            .max = 0.5});
 }
 
-Drawing align_views(const Drawing& drawing, const AlignOptions& options) {
+Drawing align_views(const Drawing& drawing, const AlignOptions& options,
+                    std::vector<std::string>* warnings) {
   Drawing aligned = drawing;
   std::array<std::optional<AxisExtent>, 3> extents;
   for (View& view : aligned.views) {
@@ -66,12 +78,15 @@ Drawing align_views(const Drawing& drawing, const AlignOptions& options) {
       if (!known) known = AxisExtent{along.axis == 1 ? 0 : -size / 2, size, view.kind};
       const double ratio = known->size / size;
       if (std::abs(ratio - 1) > options.tolerance) {
-        throw Error(std::string("its extent along ") + "xyz"[along.axis] +
-                        " differs from that in " + "view " + view_name(known->view) + " by " +
-                        percent(1 / ratio - 1),
-                    drawing.name + ", view " + view_name(view.kind),
-                    "at most " + percent(options.tolerance));
+        throw Error(
+            std::string("its extent along ") + "xyz"[along.axis] + " differs from that in " +
+                "view " + view_name(known->view) + " by " + percent(1 / ratio - 1),
+            drawing.name + ", view " + view_name(view.kind),
+            "at most " + percent(options.tolerance) + "; scene.align.tolerance allows more");
       }
+      constexpr double kSaid = 0.01;
+      if (warnings != nullptr && std::abs(ratio - 1) > kSaid)
+        warnings->push_back(scaling_text(drawing.name, view.kind, along.axis, *known, size));
       scale[c] = ratio;
       // The lowest coordinate of the view is the highest of an axis that it sees reversed.
       shift[c] = along.sign > 0 ? known->low : -(known->low + known->size);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/options.h"
 #include "models/sketch/drawing/drawing.h"
 
@@ -7,7 +10,7 @@ namespace geoprior::sketch {
 
 /// How far views of one object may disagree.
 struct AlignOptions {
-  double tolerance = 0.01;  ///< of the extents along an axis that two views share
+  double tolerance = 0.05;  ///< of the extents along an axis that two views share
 };
 void describe(OptionVisitor& v, AlignOptions& options);
 
@@ -22,6 +25,8 @@ void describe(OptionVisitor& v, AlignOptions& options);
 /// @throws Error  when two views have different extents (names both, and by how much), or a view
 /// has
 ///                no silhouette
-Drawing align_views(const Drawing& drawing, const AlignOptions& options = {});
+/// @param warnings  gets a line for each view that was scaled by more than a percent; null: none
+Drawing align_views(const Drawing& drawing, const AlignOptions& options = {},
+                    std::vector<std::string>* warnings = nullptr);
 
 }  // namespace geoprior::sketch

@@ -313,10 +313,10 @@ TEST_F(DrawingFileTest, NamesTheCrossingOfASilhouette) {
 }
 
 TEST_F(DrawingFileTest, NamesTheGapOfASilhouette) {
-  refuse("<path id='a' d='M10 10h40v40'" + kBlack + "/>\n<path id='b' d='M10 12v38h38'" + kBlack +
+  refuse("<path id='a' d='M10 10h40v40'" + kBlack + "/>\n<path id='b' d='M10 16v34h34'" + kBlack +
              "/>",
          {"boot.svg:3: path 'a'", "open", "end of 'a' at x 50 mm, y 10 mm",
-          "'b' at x 48 mm, y 10 mm", "gap of 2 mm", "at most 0.283 mm"});
+          "'b' at x 44 mm, y 10 mm", "gap of 6 mm", "at most 2.83 mm"});
   refuse("<path id='u' d='M10 10v40h40v-40'" + kBlack + "/>", {"path 'u'", "gap of 40 mm"});
 }
 

@@ -77,7 +77,7 @@ class PerturbedDrawing {
                Eigen::Translation2d(align * left_over) * Eigen::AlignedScaling2d(scale) *
                Eigen::Translation2d(-corner);
     options_.tolerance = 1e-6;
-    options_.snap = 1e-6;
+    options_.hand.snap = 1e-6;
   }
 
   static Points pulled_back(const Points& points, const Eigen::Affine2d& map) {

@@ -1,0 +1,176 @@
+#include "experiments/sketch/drawing/hand_drawn.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "core/error.h"
+#include "core/geometry/planar.h"
+#include "experiments/sketch/drawing/drawn_stroke.h"
+#include "models/sketch/drawing/fair_stroke.h"
+#include "models/sketch/drawing/join_strokes.h"
+#include "models/sketch/drawing/outline.h"
+#include "models/sketch/drawing/polyline.h"
+
+namespace geoprior::sketch {
+namespace {
+
+std::string formatted(const char* format, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+/// Arc length of a corner of the outline near to a place of it, or that place.
+double corner_near(const Outline& outline, double at, double near, double scale) {
+  constexpr double kCorner = 0.6;  // rad
+  constexpr int kSteps = 100;
+  double best = at, sharpest = kCorner;
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    const double s = at + near * i / kSteps;
+    const Eigen::Vector2d here = outline.at(s);
+    const double turn =
+        std::abs(signed_angle(here - outline.at(s - scale), outline.at(s + scale) - here));
+    if (turn > sharpest) {
+      sharpest = turn;
+      best = s;
+    }
+  }
+  return best;
+}
+
+/// The outline from one arc length on to another, counter-clockwise.
+std::vector<Eigen::Vector2d> stretch_of(const Outline& outline, double from, double to) {
+  const double whole = outline.length();
+  const auto wrapped = [&](double s) { return s - whole * std::floor(s / whole); };
+  const double span = wrapped(to - from);
+  std::vector<std::pair<double, Eigen::Vector2d>> inner;
+  for (int i = 0; i < std::ssize(outline.points()); ++i) {
+    const double along = wrapped(outline.arc_length(i) - from);
+    if (along > 1e-9 * whole && along < span - 1e-9 * whole)
+      inner.emplace_back(along, outline.points()[i]);
+  }
+  std::sort(inner.begin(), inner.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Eigen::Vector2d> points{outline.at(from)};
+  for (const auto& [along, point] : inner) points.push_back(point);
+  points.push_back(outline.at(to));
+  return points;
+}
+
+}  // namespace
+
+std::string HandDrawnView::share_text(double metres) const {
+  return formatted("%.2g mm", 1e3 * metres) +
+         formatted(" (%.2g %% of the view's diagonal)", 100 * metres / diagonal_);
+}
+
+void HandDrawnView::fair(Stroke& stroke, std::vector<std::string>& notes) const {
+  if (!options_.fairing) return;
+  std::optional<FairedStroke> faired = fair_stroke(stroke.points, stroke.closed);
+  constexpr double kLeast = 1e-3;  // of the diagonal: less is no tremor but how it was written
+  if (!faired || faired->noise < kLeast * diagonal_) return;
+  if (faired->noise > options_.noise * diagonal_) {
+    throw Error("stroke '" + stroke.id + "' trembles by " + share_text(faired->noise) +
+                    " (standard deviation)",
+                where_,
+                "at most " + formatted("%.2g %%", 100 * options_.noise) +
+                    "; raise scene.read.noise, or set scene.read.fairing = false");
+  }
+  stroke.points = std::move(faired->points);
+  notes.push_back("stroke '" + stroke.id + "' trembles by " + share_text(faired->noise) +
+                  " (standard deviation), and is faired: moved by at most " +
+                  share_text(faired->moved) + ", " + std::to_string(faired->corners.size()) +
+                  " corners kept");
+}
+
+void HandDrawnView::fair(Stroke& stroke) const {
+  std::vector<std::string> notes;
+  fair(stroke, notes);
+  for (const std::string& note : notes) warnings_.push_back(where_ + ": " + note);
+}
+
+HandDrawnView::Attempt HandDrawnView::attempt(const std::vector<Stroke>& strokes,
+                                              double snap) const {
+  Attempt made;
+  made.loops = join_silhouettes(strokes, snap * diagonal_);
+  if (made.loops.gap) return made;
+  for (const SilhouetteGap& gap : made.loops.closed) {
+    const double width = (gap.end - gap.next).norm();
+    if (width <= kExactSnap * diagonal_) continue;
+    made.notes.push_back("a gap between the ends of '" + gap.from + "' and '" + gap.to + "' at " +
+                         place_text((gap.end + gap.next) / 2) + " is closed: each moved by " +
+                         share_text(width / 2));
+  }
+  for (Stroke& loop : made.loops.loops) {
+    if (loop.points.size() >= 3) fair(loop, made.notes);
+  }
+  made.good = made.loops.loops.size() == 1 && made.loops.loops[0].points.size() >= 3 &&
+              !self_crossing(made.loops.loops[0]);
+  return made;
+}
+
+SilhouetteLoops HandDrawnView::silhouettes(const std::vector<Stroke>& strokes) const {
+  if (strokes.empty()) return {};
+  const auto accepted = [&](Attempt& made) {
+    for (const std::string& note : made.notes) warnings_.push_back(where_ + ": " + note);
+    return std::move(made.loops);
+  };
+  Attempt exact = attempt(strokes, std::min(kExactSnap, options_.snap));
+  if (exact.good) return accepted(exact);
+  Attempt loose = attempt(strokes, options_.snap);
+  if (loose.good) return accepted(loose);
+  std::vector<Stroke> single = strokes;
+  const std::vector<StrokeRepair> repairs = cut_double_strokes(single, options_.snap * diagonal_);
+  if (!repairs.empty()) {
+    Attempt repaired = attempt(single, options_.snap);
+    if (repaired.good) {
+      for (const StrokeRepair& repair : repairs) {
+        warnings_.push_back(where_ + ": stroke '" + repair.id + "' " + repair.what + " at " +
+                            place_text(repair.at) + ", by " + share_text(repair.moved));
+      }
+      return accepted(repaired);
+    }
+  }
+  return accepted(exact.loops.gap ? loose : exact);
+}
+
+void HandDrawnView::lay_on_silhouette(Stroke& border, const Stroke& silhouette) const {
+  if (silhouette.points.size() < 3 || border.points.size() < 2) return;
+  const Outline outline(silhouette.points);
+  std::vector<Eigen::Vector2d> line = border.points;
+  if (border.closed) line.push_back(line.front());
+  constexpr int kSamples = 64;
+  constexpr double kOn = 1e-3;  // of the diagonal
+  const double whole = length(line);
+  double farthest = 0;
+  for (int i = 0; i <= kSamples; ++i) {
+    const Eigen::Vector2d at = point_along(line, whole * i / kSamples);
+    farthest = std::max(farthest, std::abs(outline.nearest(at).distance));
+  }
+  if (farthest <= kOn * diagonal_ || farthest > options_.snap * diagonal_) return;
+  if (border.closed) {
+    border.points = outline.points();
+  } else {
+    const double near = options_.snap * diagonal_, scale = 0.02 * diagonal_;
+    const double from = corner_near(outline, outline.nearest(line.front()).arc_length, near, scale);
+    const double to = corner_near(outline, outline.nearest(line.back()).arc_length, near, scale);
+    const double middle = outline.nearest(point_along(line, whole / 2)).arc_length;
+    const auto after = [&](double s) {
+      return s - from - outline.length() * std::floor((s - from) / outline.length());
+    };
+    if (after(middle) <= after(to)) {
+      border.points = stretch_of(outline, from, to);
+    } else {
+      border.points = stretch_of(outline, to, from);
+      std::reverse(border.points.begin(), border.points.end());
+    }
+  }
+  warnings_.push_back(where_ + ": border '" + border.id +
+                      "' runs beside the silhouette, and is laid onto it: moved by at most " +
+                      share_text(farthest));
+}
+
+}  // namespace geoprior::sketch
