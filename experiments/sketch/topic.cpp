@@ -19,7 +19,6 @@ Topic make_topic() {
   topic.inputs = {"visual-hull"};
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
-  topic.files = {drawing_keys()};
   topic.told_files = {"pattern-verdict.txt"};
   topic.commands = {sketch_command()};
   topic.files = {drawing_keys(), stroke_keys()};

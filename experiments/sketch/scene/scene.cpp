@@ -39,16 +39,12 @@ void load_surface(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.input.surface = std::move(mesh);
 }
 
-/// Silhouettes of several views, and a word on what the sections between them are taken for.
-void align_drawing(const SketchSceneOptions& o, SketchScene& scene) {
-  scene.aligned = align_views(scene.input.drawing, o.align);
+/// A word on what the sections between the views are taken for.
+void tell_sections(const SketchSceneOptions& o, SketchScene& scene) {
   const std::vector<OutlinedView> views = outlined_views(scene.aligned);
-  for (const OutlinedView& view : views)
-    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
-  if (o.hull.sections == HullSections::automatic && views.size() > 1) {
-    const SectionBounds sections(scene.aligned, views, o.hull.sections);
-    scene.load_warnings.push_back(sections.report().text());
-  }
+  if (o.hull.sections != HullSections::automatic || views.size() < 2) return;
+  const SectionBounds sections(scene.aligned, views, o.hull.sections);
+  scene.load_warnings.push_back(sections.report().text());
 }
 
 void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
@@ -60,7 +56,6 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.input.drawing = std::move(read.drawing);
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
-  if (scene.input.drawing.find(ViewKind::photo) == nullptr) align_drawing(o, scene);
   if (!o.photo.empty()) {
     const std::filesystem::path photo = find_file(o.photo, folder, "data", "scene.photo");
     replace_picture(scene.input.drawing, photo, read.page);
@@ -70,6 +65,7 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.aligned = align_views(scene.input.drawing, o.align, &scene.load_warnings);
   for (std::string& doubt : doubtful_views(scene.aligned))
     scene.load_warnings.push_back(std::move(doubt));
+  tell_sections(o, scene);
   // What a trembling hand meant is what the surface is measured against.
   how.tremor.reset();
   const Drawing meant =
