@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/angles.h"
+#include "core/connectivity.h"
 #include "experiments/sketch/sewn_lines.h"
 #include "metrics/developability/ruling_angle.h"
 #include "metrics/developability/sharp_turning.h"
@@ -35,6 +36,16 @@ std::optional<double> largest_mismatch(const Frame& frame) {
 
 }  // namespace
 
+/// Length of the edges both of whose ends are marked.
+double length_between(const TriMesh& mesh, const std::vector<bool>& marked) {
+  double length = 0;
+  const EdgeConnectivity edges(mesh.F);
+  for (const auto& [a, b] : edges.edges()) {
+    if (marked[a] && marked[b]) length += (mesh.V.row(a) - mesh.V.row(b)).norm();
+  }
+  return length;
+}
+
 std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   const Part& pattern = frame.require_part("pattern", Part::Kind::triangles);
   const Part& surface = frame.require_part("surface", Part::Kind::triangles);
@@ -56,7 +67,8 @@ SurfaceMeasures surface_measures(const SketchScene& /*scene*/, const Frame& fram
   std::vector<bool> left_out(mesh.V.rows());
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) left_out[v] = seam(v) > 0 || fold(v) > 0;
   return {developability_spread(mesh), developability_spread(mesh, left_out),
-          sharp_turning_share(mesh, kSharpTurn, left_out)};
+          sharp_turning_share(mesh, kSharpTurn, left_out),
+          crease_measures(mesh, kCreaseTurn, left_out), length_between(mesh, left_out)};
 }
 
 SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame) {

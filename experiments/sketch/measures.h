@@ -5,6 +5,7 @@
 
 #include "core/frame.h"
 #include "experiments/sketch/scene/scene.h"
+#include "metrics/developability/crease_turning.h"
 #include "metrics/developability/developability.h"
 #include "metrics/isometry/flattening.h"
 
@@ -14,6 +15,8 @@ namespace geoprior::sketch {
 struct SurfaceMeasures {
   DevelopabilitySpread all, panels;
   double sharp_turning = 0;  ///< `sharp_turning_share`, without edges along seams and folds
+  CreaseMeasures crease;     ///< without edges along seams and folds
+  double drawn_length = 0;   ///< of seams and folds, where creases are asked for (m)
 };
 SurfaceMeasures surface_measures(const SketchScene& scene, const Frame& frame);
 

@@ -34,18 +34,34 @@ void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& 
   pins.set(vertex, along.axis, along.sign * value);
 }
 
-/// Triangles with vertices of their own on the two sides of every seam.
+/// A surface's mesh with vertices of their own on the two sides of every seam.
+struct SeveredMesh {
+  Eigen::MatrixX3i F;               ///< in the order of the surface's triangles
+  std::vector<int> surface_vertex;  ///< of each vertex
+};
+
+SeveredMesh severed(const SketchSurface& surface) {
+  const TriMesh& mesh = surface.hull.mesh;
+  SeveredMesh cut{Eigen::MatrixX3i(mesh.F.rows(), 3), {}};
+  int first = 0;
+  for (const CutPiece& piece : cut_surface(mesh, seam_edges(surface))) {
+    first = static_cast<int>(cut.surface_vertex.size());
+    for (int t = 0; t < piece.mesh.triangle_count(); ++t)
+      cut.F.row(piece.surface_triangle[t]) = piece.mesh.F.row(t).array() + first;
+    cut.surface_vertex.resize(first + piece.mesh.vertex_count());
+    for (int t = 0; t < piece.mesh.triangle_count(); ++t) {
+      for (int k = 0; k < 3; ++k)
+        cut.surface_vertex[first + piece.mesh.F(t, k)] = mesh.F(piece.surface_triangle[t], k);
+    }
+  }
+  return cut;
+}
+
 DevelopableRotation rotation_of(const SketchSurface& surface, const SeveralViewsOptions& options) {
   const TriMesh& mesh = surface.hull.mesh;
   if (options.across_seams) return {mesh.F, mesh.vertex_count(), options.developability};
-  Eigen::MatrixX3i F(mesh.F.rows(), 3);
-  int first = 0;
-  for (const CutPiece& piece : cut_surface(mesh, seam_edges(surface))) {
-    for (int t = 0; t < piece.mesh.triangle_count(); ++t)
-      F.row(piece.surface_triangle[t]) = piece.mesh.F.row(t).array() + first;
-    first += piece.mesh.vertex_count();
-  }
-  return {F, first, options.developability};
+  const SeveredMesh cut = severed(surface);
+  return {cut.F, static_cast<int>(cut.surface_vertex.size()), options.developability};
 }
 
 SketchInput without_seams(SketchInput input) {
@@ -61,7 +77,10 @@ class SeveralViews final : public SketchMethod {
       : surface_(prepared.surface),
         options_(options),
         X_(prepared.start),
+        severed_(severed(surface_)),
         rotation_(rotation_of(surface_, options)),
+        average_(on_both_sides(prepared.start), severed_.F, options.fairing),
+        faired_(static_cast<int>(options.fairing.share * iterations_of(prepared, options))),
         fold_(surface_, options.fold),
         transfer_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count()) {
     const EdgeConnectivity edges(surface_.hull.mesh.F);
@@ -86,15 +105,24 @@ class SeveralViews final : public SketchMethod {
     {
       const Phase phase(context, "rotations");
       const Eigen::MatrixX3d normals = triangle_normals({X_, surface_.hull.mesh.F});
-      rotations = rotation_.rotations(normals);
+      rotations =
+          steps_ < faired_ ? average_.rotations(on_both_sides(X_)) : rotation_.rotations(normals);
       if (options_.folds) fold_.blend(X_, normals, rotations);
     }
     const Phase phase(context, "transfer");
     X_ = transfer_.solve(X_, rotations, pins);
+    ++steps_;
   }
 
   [[nodiscard]] const Eigen::MatrixX3d& positions() const override { return X_; }
-  void load(StateReader& in) override { in.matrix(X_); }
+  void save(StateWriter& out) const override {
+    out.matrix(X_);
+    out.number(steps_);
+  }
+  void load(StateReader& in) override {
+    in.matrix(X_);
+    steps_ = in.number<int>();
+  }
 
   void diagnose(std::map<std::string, double>& into) const override {
     into["silhouette_edges"] = edges_;
@@ -128,6 +156,20 @@ class SeveralViews final : public SketchMethod {
   }
 
  private:
+  /// Iterations that the method is to make on a surface: other ones once suggestions were cut.
+  static int iterations_of(const PreparedSketch& prepared, const SeveralViewsOptions& options) {
+    const bool cut = std::any_of(prepared.surface.seams.begin(), prepared.surface.seams.end(),
+                                 [](const StrokePath& seam) { return seam.points.empty(); });
+    return cut && options.suggest ? options.suggest->iterations : options.iterations;
+  }
+
+  /// Positions of the vertices of the severed mesh.
+  [[nodiscard]] Eigen::MatrixX3d on_both_sides(const Eigen::MatrixX3d& X) const {
+    Eigen::MatrixX3d both(severed_.surface_vertex.size(), 3);
+    for (Eigen::Index v = 0; v < both.rows(); ++v) both.row(v) = X.row(severed_.surface_vertex[v]);
+    return both;
+  }
+
   void pin_strokes(CoordinatePins& pins) {
     edges_ = 0;
     gaps_.clear();
@@ -165,7 +207,11 @@ class SeveralViews final : public SketchMethod {
   SeveralViewsOptions options_;
   Eigen::MatrixX3d X_;
   std::vector<Zippering> zippering_;
+  SeveredMesh severed_;
   DevelopableRotation rotation_;
+  RulingAverage average_;
+  int faired_;     ///< steps that average, the first ones
+  int steps_ = 0;  ///< that were made
   FoldRotation fold_;
   PinnedTransfer transfer_;
   int edges_ = 0;
@@ -188,6 +234,8 @@ void describe(OptionVisitor& v, SeveralViewsOptions& o) {
           {.doc = "number of steps; a frame each", .min = 1, .max = 1000});
   describe_choice(v, "order", o.order, kOrders,
                   {.doc = "how silhouettes and developability follow each other"});
+  describe_group(v, "fairing", o.fairing,
+                 {.doc = "averages of normals along rulings, in the first iterations"});
   describe_group(v, "developability", o.developability, {.doc = "what triangles are turned to"});
   describe_group(v, "fold", o.fold, {.doc = "what drawn folds ask of the surface"});
   v.value("silhouettes", o.silhouettes, {.doc = "whether silhouettes are pulled onto the drawing"});

@@ -10,6 +10,7 @@
 #include "solvers/sketch/pattern/seam_suggestion.h"
 #include "solvers/sketch/surface/developable_rotation.h"
 #include "solvers/sketch/surface/fold_rotation.h"
+#include "solvers/sketch/surface/ruling_average.h"
 #include "solvers/sketch/surface/zippering.h"
 
 namespace geoprior::sketch {
@@ -29,8 +30,9 @@ struct SuggestedSeamsOptions {
 void describe(OptionVisitor& v, SuggestedSeamsOptions& options);
 
 struct SeveralViewsOptions {
-  int iterations = 20;
+  int iterations = 10;
   StepOrder order = StepOrder::merged;
+  RulingAverageOptions fairing;
   DevelopableRotationOptions developability;
   FoldOptions fold;
   bool silhouettes = true;  ///< false: developability alone
@@ -47,11 +49,14 @@ void describe(OptionVisitor& v, SeveralViewsOptions& options);
 /// and Cani 2015): the smoothed visual hull is pulled onto the drawn silhouettes and made
 /// developable, in turns.
 ///
-/// Every iteration closes the silhouettes (`Zippering`), turns the triangles towards cones
-/// (`DevelopableRotation`) and folds (`FoldRotation`), and solves for the surface
-/// (`PinnedTransfer`) with the chosen edges where the hull has them in their view: silhouettes are
-/// met exactly, but for gaps that are reported. Borders and seams stay on their strokes likewise,
-/// free to slide along them.
+/// Every iteration closes the silhouettes (`Zippering`), turns the triangles, and solves for the
+/// surface (`PinnedTransfer`) with the chosen edges where the hull has them in their view:
+/// silhouettes are met exactly, but for gaps that are reported. Borders and seams stay on their
+/// strokes likewise, free to slide along them. Triangles are turned to fair rulings
+/// (`RulingAverage`, which does not look across seams) in the first half of the iterations, towards
+/// cones of their neighbourhood
+/// (`DevelopableRotation`) in the second, and in all of them towards drawn folds (`FoldRotation`).
+/// The cones alone, as the thesis has them, leave a saw along every former edge of the hull.
 ///
 /// It cannot: move the seams that it is given, treat parts that hide each other, make folds that no
 /// view shows.

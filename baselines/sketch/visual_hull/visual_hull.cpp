@@ -1,5 +1,7 @@
 #include "baselines/sketch/visual_hull/visual_hull.h"
 
+#include "baselines/sketch/visual_hull/rounded_hull.h"
+
 namespace geoprior::sketch {
 namespace {
 
@@ -20,6 +22,14 @@ void describe(OptionVisitor& v, VisualHullOptions& o) {
   v.value("smoothed", o.smoothed, {.doc = "whether the hull is smoothed as the methods begin"});
   v.value("boxes", o.boxes,
           {.doc = "whether its sections are all that the views see, whatever the scene says"});
+  v.value("double_steps", o.double_steps,
+          {.doc = "number of double steps of a smoothed hull; absent: the scene's",
+           .min = 0,
+           .max = 100000});
+  v.value("rounded", o.rounded,
+          {.doc = "radius of a ball that rounds the hull's ridges, in edge lengths of its grid",
+           .min = 0,
+           .max = 100});
 }
 
 std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
@@ -29,7 +39,14 @@ std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
   return make_sketch_process(seen, 0, [options](const PreparedSketch& prepared, RunContext&) {
     return std::make_unique<ShownHull>(options.smoothed ? prepared.start
                                                         : prepared.surface.hull.mesh.V);
-  });
+    SketchInput other = input;
+    if (options.double_steps) other.smoothing.double_steps = *options.double_steps;
+    return make_sketch_process(other, 0, [options](const PreparedSketch& prepared, RunContext&) {
+      return std::make_unique<ShownHull>(
+          options.smoothed
+              ? prepared.start
+              : rounded_hull(prepared.surface, options.rounded * prepared.surface.hull.spacing));
+    });
 }
 
 }  // namespace geoprior::sketch

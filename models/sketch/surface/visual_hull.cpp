@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/geometry/topology.h"
 #include "core/limits.h"
+#include "models/sketch/ridges/ridge_flips.h"
 #include "models/sketch/sections/hull_sections.h"
 #include "models/sketch/surface/collapse_edges.h"
 #include "models/sketch/surface/nets.h"
@@ -288,6 +289,10 @@ void describe(OptionVisitor& v, HullOptions& o) {
   describe_choice(v, "sections", o.sections, kSections,
                   {.doc = "sections of the hull: decided by what is drawn, all that the views see, "
                           "or the top view's outline scaled to front and side"});
+                  {.doc = "horizontal sections: what the views see, or the top view's outline "
+                          "scaled to front and side"});
+                  v.value("ridges", o.ridges,
+                          {.doc = "whether edges of the mesh are flipped to run along ridges"});
 }
 
 std::vector<OutlinedView> outlined_views(const Drawing& aligned) {
@@ -323,6 +328,7 @@ VisualHull visual_hull(const Drawing& aligned, const HullOptions& options) {
   hull.mesh = split_quads(quads);
   // Several vertices of the nets may have gone to one corner.
   collapse_short_edges(hull.mesh, 0.01 * hull.spacing);
+  if (options.ridges) flip_to_ridges(hull.mesh);
   place_on_silhouettes(hull);
   hull.sections = sections.report();
   measure_shares(hull, sections);
