@@ -219,7 +219,7 @@ std::string name_of_patch(const CurveNet& net, const RuledPatch& patch) {
   return patch.id;
 }
 
-/// Whether one border of a patch was completed as the parallel copy of the other.
+/// Whether one border of a patch is the parallel copy of the other.
 bool is_copied(const CompletedView& completed, const CurveNet& net, const RuledPatch& patch) {
   const int a = net.curves[patch.first].stroke, b = net.curves[patch.second].stroke;
   return std::any_of(completed.copies.begin(), completed.copies.end(), [&](const auto& copy) {

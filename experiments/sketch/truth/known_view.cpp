@@ -195,7 +195,6 @@ void KnownDrawing::draw_rulings(const KnownPanel& panel) {
     const double t = here / (here - next);
     const Eigen::Vector3d p = between(a, k, t), q = between(b, k, t);
     if (is_hidden((p + q) / 2)) continue;
-    if (visible_only_ && (is_hidden(p) || is_hidden(q))) continue;
     add(panel.name + "-silhouette-" + std::to_string(++number), StrokeKind::silhouette, {p, q})
         .name = panel.name;
   }

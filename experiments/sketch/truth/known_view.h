@@ -40,6 +40,7 @@ PlacedPanels placed_panels(const KnownObject& object, const KnownPlacement& plac
 /// With `visible_only` as the thesis has it, nothing that is hidden is drawn: of every border the
 /// stretches that are seen, each a stroke of its own, up to where something begins to cover them
 /// ("bottom", "bottom-2", ...), of the pairs those both of whose ends are seen, and no occlusion.
+/// Silhouettes that are seen in their middle are drawn to both borders, with a ruler.
 ///
 /// Every stroke has its true place in space, every panel its true area.
 SyntheticView known_view(const KnownObject& object, bool visible_only = false);

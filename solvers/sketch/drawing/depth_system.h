@@ -46,7 +46,7 @@ struct DepthProblem {
   std::vector<RuledPatch> ruled;
   std::vector<std::vector<int>> planar;  ///< nodes of each flat panel's border
   std::vector<bool> copied =
-      {};  ///< ruled patches of which one border was completed from the other
+      {};  ///< ruled patches of which one border is the other's parallel copy
 
   /// Weight of the parallel planes of a ruled patch; 0: none.
   [[nodiscard]] double parallel_weight(std::size_t patch, const DepthOptions& options) const;
@@ -90,7 +90,8 @@ std::vector<RulingForms> trusted_rulings(const CurveNet& net, const RuledPatch& 
 /// - planarity: the border of a flat panel, z = a x + b y + c with unknown a, b, c.
 /// - parallel: both borders of a ruled patch are plane and parallel, z = a x + b y + c1 and
 ///   z = a x + b y + c2. The thesis assumes it of cones but does not list it as a term: weight 0,
-///   but where one border was completed as the parallel copy of the other (`copied_planes`).
+///   but where one border is the parallel copy of the other in the picture (`copied_planes`; see
+///   `complete_borders`).
 ///
 /// @throws Error  when the depth of curves is not determined: the normal matrix has an eigenvalue
 ///                below 1e-13 times the greatest (names the curves that can move)

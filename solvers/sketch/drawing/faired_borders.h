@@ -20,7 +20,8 @@ struct FairedLine {
 /// of a smooth curve are of the third order in the spacing: s is their median over 0.6745 sqrt(20).
 /// The faired points minimise sum |x - y|^2 + lambda sum |third difference of x|^2, with lambda
 /// such that they move by 0.92 s (of which a smoother that keeps about a tenth of the noise leaves
-/// the rest). Lines of fewer than twelve points, of uneven distances (above 1 : 6), or with s below
+/// the rest). Lines of fewer than twelve points, of uneven distances (one in twenty above
+/// 3.5 times the median), or with s below
 /// `least` are left as they are.
 ///
 /// It cannot tell a tremor that neighbouring points share, and rounds corners: a line is to have

@@ -23,14 +23,16 @@ namespace {
 /// it, and a guess that is shorter is none.
 constexpr double kCoverReach = 2;
 /// The same of the rulings' ends, which a hand puts onto borders.
-constexpr double kRulingReach = 4;
+constexpr double kMarkReach = 4;
 /// And at least this share of the diagonal.
-constexpr double kHandReach = 0.03;
+constexpr double kMarkHand = 0.03;
 /// Turning at either end of a join of two stretches.
 constexpr double kSmoothJoin = 50 * kDegree;
 /// Of the drawing's diagonal: along which the direction of an end is taken, spacing of guesses.
 constexpr double kEndPart = 0.04;
 constexpr double kGuessSpacing = 1.0 / 150;
+/// To which a border is the parallel copy of another.
+constexpr double kCopyEvidence = 0.005;
 /// What must be seen of a rim that goes round: five ninths of its ellipse, or 130 degrees of it
 /// between silhouettes of its own panel.
 constexpr double kRimSpan = 200 * kDegree;
@@ -69,6 +71,73 @@ PictureCurve picture_of(const Stretch& stretch, bool closed) {
   return curve;
 }
 
+/// A stretch with its places on a model of the whole border, in the model's sense.
+struct PlacedStretch {
+  double begin = 0, end = 0;
+  bool turned = false;
+  Stretch stretch;
+};
+
+std::vector<PlacedStretch> placed_along(const PictureCurve& model,
+                                        const std::vector<Stretch>& stretches) {
+  const double around = static_cast<double>(model.points.size());
+  const auto ahead = [&](double a, double b) {
+    return b - a - around * std::floor((b - a) / around);
+  };
+  std::vector<PlacedStretch> placed;
+  for (const Stretch& stretch : stretches) {
+    PlacedStretch p{nearest_place(model, stretch.front().p).at,
+                    nearest_place(model, stretch.back().p).at, false, stretch};
+    // The way from begin over the middle to the end tells the sense around a closed model.
+    const double middle = nearest_place(model, stretch[stretch.size() / 2].p).at;
+    p.turned = model.closed ? ahead(p.begin, middle) > ahead(p.begin, p.end) : p.end < p.begin;
+    if (p.turned) std::swap(p.begin, p.end);
+    if (p.turned) std::reverse(p.stretch.begin(), p.stretch.end());
+    if (model.closed) p.end = p.begin + ahead(p.begin, p.end);
+    placed.push_back(std::move(p));
+  }
+  std::stable_sort(
+      placed.begin(), placed.end(),
+      [](const PlacedStretch& a, const PlacedStretch& b) { return a.begin < b.begin; });
+  return placed;
+}
+
+double length_between(const PictureCurve& curve, double a, double b) {
+  double sum = 0;
+  Eigen::Vector2d before = point_at(curve, a);
+  for (double k = std::floor(a) + 1; k < b; k += 1) {
+    const Eigen::Vector2d p = point_at(curve, k);
+    sum += (p - before).norm();
+    before = p;
+  }
+  return sum + (point_at(curve, b) - before).norm();
+}
+
+/// A border as it is put together along a model.
+struct FollowedModel {
+  const PictureCurve& model;
+  Stretch points;
+  double added = 0;  ///< length (m)
+
+  /// Points of the model between two places, moved so that they go on from the given points;
+  /// without a point, with the end of the model.
+  void fill(double a, double b, const std::optional<Eigen::Vector2d>& at_a,
+            const std::optional<Eigen::Vector2d>& at_b) {
+    const Eigen::Vector2d zero(0, 0);
+    const Eigen::Vector2d da = at_a ? Eigen::Vector2d(*at_a - point_at(model, a)) : zero;
+    const Eigen::Vector2d db = at_b ? Eigen::Vector2d(*at_b - point_at(model, b)) : zero;
+    Stretch guess;
+    for (double k = at_a ? std::floor(a) + 1 : a; at_b ? k < b : k <= b + 1e-9; k += 1) {
+      const double t = b > a ? (k - a) / (b - a) : 0;
+      guess.push_back({point_at(model, k) + (1 - t) * da + t * db, {}});
+    }
+    if (at_a && !guess.empty()) added += (guess.front().p - *at_a).norm();
+    if (at_b && !guess.empty()) added += (guess.back().p - *at_b).norm();
+    added += stretch_length(guess);
+    points.insert(points.end(), guess.begin(), guess.end());
+  }
+};
+
 /// "rim" of "rim-2": what stretches of one border are called by.
 std::string name_of_border(const std::string& id) {
   const std::size_t dash = id.rfind('-');
@@ -88,6 +157,8 @@ class BorderCompletion {
  public:
   BorderCompletion(const View& view, const MirrorPlane& plane, double snap, Completion completion);
   CompletedView complete();
+  /// Strokes of the drawing.
+  [[nodiscard]] std::vector<std::array<int, 2>> parallel_borders();
 
  private:
   void find_covered_ends();
@@ -120,8 +191,7 @@ class BorderCompletion {
   std::vector<PartialBorder> borders_;
   std::vector<BorderRuling> rulings_;
   std::vector<GuessedStretch> guesses_;
-  std::vector<std::array<int, 2>> copies_;  ///< strokes of the drawing
-  std::vector<Stroke> pairs_;               ///< drawn ones, then those of parallel copies
+  std::vector<Stroke> pairs_;  ///< drawn ones, then those of parallel copies
   std::size_t drawn_pairs_ = 0;
 };
 
@@ -258,7 +328,7 @@ void BorderCompletion::find_rulings() {
     BorderRuling found;
     found.end = {stroke.points.front(), stroke.points.back()};
     for (int k = 0; k < 2; ++k) {
-      double least = std::max(kRulingReach * snap_, kHandReach * diagonal_);
+      double least = std::max(kMarkReach * snap_, kMarkHand * diagonal_);
       for (int b = 0; b < std::ssize(borders_); ++b) {
         const std::vector<std::string>& panels = borders_[b].panels;
         const bool named = stroke.name.empty() ||
@@ -299,89 +369,37 @@ CopyHints BorderCompletion::hints_between(int whole, int copy) const {
 /// @return whether something was added
 bool BorderCompletion::follow(int number, const PictureCurve& model, const std::string& from) {
   PartialBorder& border = borders_[number];
-  const double around = static_cast<double>(model.points.size());
-  struct Placed {
-    double begin, end;
-    Stretch stretch;
-  };
-  std::vector<Placed> placed;
-  for (const Stretch& stretch : border.stretches) {
-    Placed p{nearest_place(model, stretch.front().p).at, nearest_place(model, stretch.back().p).at,
-             stretch};
-    const double middle = nearest_place(model, stretch[stretch.size() / 2].p).at;
-    if (model.closed) {
-      // The way from begin over the middle to the end tells the sense.
-      const auto ahead = [&](double a, double b) {
-        return b - a - around * std::floor((b - a) / around);
-      };
-      const bool rising = ahead(p.begin, middle) <= ahead(p.begin, p.end);
-      if (!rising) std::swap(p.begin, p.end);
-      if (!rising) std::reverse(p.stretch.begin(), p.stretch.end());
-      p.end = p.begin + ahead(p.begin, p.end);
-    } else if (p.end < p.begin) {
-      std::swap(p.begin, p.end);
-      std::reverse(p.stretch.begin(), p.stretch.end());
-    }
-    placed.push_back(std::move(p));
-  }
-  // The covered ends go with the first stretch's old sense.
-  const bool turned = placed.front().stretch.front().p != border.stretches.front().front().p;
+  const std::vector<PlacedStretch> placed = placed_along(model, border.stretches);
+  // The covered ends go with the sense of the first stretch.
   std::array<bool, 2> covered = border.covered;
-  if (turned) std::swap(covered[0], covered[1]);
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const Placed& a, const Placed& b) { return a.begin < b.begin; });
-  double added = 0;
-  Stretch whole;
-  /// Points of the model strictly between two places, moved so that they meet the given points.
-  const auto fill = [&](double a, double b, std::optional<Eigen::Vector2d> at_a,
-                        std::optional<Eigen::Vector2d> at_b) {
-    const Eigen::Vector2d da = at_a ? *at_a - point_at(model, a) : Eigen::Vector2d(0, 0);
-    const Eigen::Vector2d db = at_b ? *at_b - point_at(model, b) : Eigen::Vector2d(0, 0);
-    Stretch guess;
-    for (double k = at_a ? std::floor(a) + 1 : a; at_b ? k < b : k <= b + 1e-9; k += 1) {
-      const double t = b > a ? (k - a) / (b - a) : 0;
-      guess.push_back({point_at(model, k) + (1 - t) * da + t * db, {}});
-    }
-    if (at_a && !guess.empty()) added += (guess.front().p - *at_a).norm();
-    if (at_b && !guess.empty()) added += (guess.back().p - *at_b).norm();
-    added += stretch_length(guess);
-    whole.insert(whole.end(), guess.begin(), guess.end());
-  };
+  if (placed.front().turned) std::swap(covered[0], covered[1]);
   const double least = kCoverReach * snap_;
-  const auto model_length = [&](double a, double b) {
-    double sum = 0;
-    Eigen::Vector2d before = point_at(model, a);
-    for (double k = std::floor(a) + 1; k < b; k += 1) {
-      const Eigen::Vector2d p = point_at(model, k);
-      sum += (p - before).norm();
-      before = p;
-    }
-    return sum + (point_at(model, b) - before).norm();
-  };
-  const double last = around - 1;
-  if (!model.closed && covered[0] && model_length(0, placed.front().begin) > least) {
-    fill(0, placed.front().begin, std::nullopt, placed.front().stretch.front().p);
+  const double last = static_cast<double>(model.points.size()) - 1;
+  const PlacedStretch &first = placed.front(), &back = placed.back();
+  FollowedModel whole{model, {}, 0};
+  if (!model.closed && covered[0] && length_between(model, 0, first.begin) > least) {
+    whole.fill(0, first.begin, std::nullopt, first.stretch.front().p);
     covered[0] = false;
   }
   for (std::size_t k = 0; k < placed.size(); ++k) {
-    whole.insert(whole.end(), placed[k].stretch.begin(), placed[k].stretch.end());
+    const Stretch& stretch = placed[k].stretch;
+    whole.points.insert(whole.points.end(), stretch.begin(), stretch.end());
     if (k + 1 < placed.size())
-      fill(placed[k].end, placed[k + 1].begin, placed[k].stretch.back().p,
-           placed[k + 1].stretch.front().p);
+      whole.fill(placed[k].end, placed[k + 1].begin, stretch.back().p,
+                 placed[k + 1].stretch.front().p);
   }
-  const Placed& back = placed.back();
   if (model.closed) {
-    fill(back.end, placed.front().begin + around, back.stretch.back().p,
-         placed.front().stretch.front().p);
+    whole.fill(back.end, first.begin + last + 1, back.stretch.back().p, first.stretch.front().p);
     border.closed = true;
-  } else if (covered[1] && model_length(back.end, last) > least) {
-    fill(back.end, last, back.stretch.back().p, std::nullopt);
+    covered = {false, false};
+  } else if (covered[1] && length_between(model, back.end, last) > least) {
+    whole.fill(back.end, last, back.stretch.back().p, std::nullopt);
     covered[1] = false;
   }
-  border.stretches = {std::move(whole)};
-  border.covered = border.closed ? std::array<bool, 2>{false, false} : covered;
-  if (added > 0) guesses_.push_back({view_.strokes[border.stroke].id, from, added});
-  return added > 0;
+  border.stretches = {std::move(whole.points)};
+  border.covered = covered;
+  if (whole.added > 0) guesses_.push_back({view_.strokes[border.stroke].id, from, whole.added});
+  return whole.added > 0;
 }
 
 /// From a border that a drawn ruling joins it to.
@@ -407,7 +425,6 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   }
   if (!best) return false;
   copy_pairs(from, number, *best);
-  copies_.push_back({borders_[from].stroke, borders_[number].stroke});
   const PartialBorder& neighbour = borders_[from];
   PictureCurve model = picture_of(neighbour.stretches.front(), neighbour.closed);
   for (Eigen::Vector2d& p : model.points) p = (*best)(p);
@@ -422,7 +439,7 @@ bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) 
     return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
   });
   if (!named) return false;
-  const double reach = std::max(kRulingReach * snap_, kHandReach * diagonal_);
+  const double reach = std::max(kMarkReach * snap_, kMarkHand * diagonal_);
   // Where others of the same panels are nearer, the pair belongs to them.
   for (const Eigen::Vector2d& end : {pair.points.front(), pair.points.back()}) {
     const double own = distance_to(border, end);
@@ -463,7 +480,7 @@ bool BorderCompletion::between_own_silhouettes(int number) const {
   const auto at_ruling = [&](const Eigen::Vector2d& end) {
     return std::any_of(rulings_.begin(), rulings_.end(), [&](const BorderRuling& r) {
       for (int k = 0; k < 2; ++k)
-        if (r.border[k] == number && (r.end[k] - end).norm() <= kRulingReach * snap_) return true;
+        if (r.border[k] == number && (r.end[k] - end).norm() <= kMarkReach * snap_) return true;
       return false;
     });
   };
@@ -589,6 +606,29 @@ void BorderCompletion::complete_all() {
     if (border.stretches.size() > 1) join_by_cubics(border);
 }
 
+std::vector<std::array<int, 2>> BorderCompletion::parallel_borders() {
+  if (rulings_.empty()) find_rulings();
+  std::vector<std::array<int, 2>> copies;
+  for (int a = 0; a < std::ssize(borders_); ++a) {
+    for (int b = 0; b < std::ssize(borders_); ++b) {
+      if (a == b || borders_[a].stretches.size() != 1 || borders_[b].stretches.size() != 1)
+        continue;
+      const CopyHints hints = hints_between(a, b);
+      const std::array<int, 2> other{borders_[b].stroke, borders_[a].stroke};
+      if (hints.rulings.empty() || std::find(copies.begin(), copies.end(), other) != copies.end())
+        continue;
+      const PictureCurve whole =
+          evenly(picture_of(borders_[a].stretches.front(), borders_[a].closed),
+                 2 * kGuessSpacing * diagonal_);
+      const std::optional<ParallelCopy> copy =
+          fit_parallel_copy(whole, seen_points(borders_[b]), {hints.rulings, {}});
+      if (copy && copy->rms <= kCopyEvidence * diagonal_)
+        copies.push_back({borders_[a].stroke, borders_[b].stroke});
+    }
+  }
+  return copies;
+}
+
 /// A flat panel whose borders end to end leave two ends open gets a straight border between them.
 void BorderCompletion::close_panels(CompletedView& out) const {
   std::map<std::string, std::vector<const PartialBorder*>> members;
@@ -674,8 +714,8 @@ void BorderCompletion::put_strokes(CompletedView& out) const {
     number_of[s] = static_cast<int>(out.view.strokes.size());
     out.view.strokes.push_back(std::move(stroke));
   }
-  for (const auto& [whole, copy] : copies_)
-    out.copies.push_back({number_of.at(whole), number_of.at(copy)});
+  for (std::array<int, 2>& copy : out.copies)
+    for (int& stroke : copy) stroke = number_of.at(stroke);
   hidden.insert(hidden.end(), pairs_.begin() + static_cast<std::ptrdiff_t>(drawn_pairs_),
                 pairs_.end());
   for (Stroke& stroke : hidden) {
@@ -693,6 +733,7 @@ CompletedView BorderCompletion::complete() {
   out.view.kind = view_.kind;
   out.view.picture = view_.picture;
   out.guesses = guesses_;
+  out.copies = parallel_borders();
   put_strokes(out);
   close_panels(out);
   for (const Stroke& stroke : view_.strokes)
@@ -733,11 +774,16 @@ DrawnPlace CompletedView::place(int stroke, double at) const {
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
                                Completion completion) {
   const bool marked = !strokes_of(view, StrokeKind::occlusion).empty();
-  if (marked || completion == Completion::none) return as_drawn(view);
+  CompletedView drawn = as_drawn(view);
+  if (completion == Completion::none) return drawn;
+  if (marked) {
+    drawn.copies = BorderCompletion(view, plane, snap, completion).parallel_borders();
+    return drawn;
+  }
   CompletedView completed = BorderCompletion(view, plane, snap, completion).complete();
   if (!completed.guesses.empty()) return completed;
-  CompletedView drawn = as_drawn(view);
   drawn.open_ends = std::move(completed.open_ends);
+  drawn.copies = BorderCompletion(view, plane, snap, completion).parallel_borders();
   return drawn;
 }
 

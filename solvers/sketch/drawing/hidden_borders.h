@@ -35,7 +35,8 @@ struct CompletedView {
   View view;
   std::vector<std::vector<DrawnPlace>> places;  ///< of each point of each stroke
   std::vector<GuessedStretch> guesses;
-  std::vector<std::array<int, 2>> copies;  ///< strokes: a border and its parallel copy
+  /// Strokes of borders that a ruling joins and of which one is the parallel copy of the other.
+  std::vector<std::array<int, 2>> copies;
   std::vector<std::string> open_ends;  ///< strokes that end where something covers them, as drawn
   double drawn_length = 0;             ///< of all borders in the view (m)
   double guessed_length = 0;
@@ -64,6 +65,9 @@ struct CompletedView {
 /// Guesses agree with what is seen to two snapping distances, or are not made. Whatever is guessed
 /// is marked by an occlusion in the result. It cannot guess what neither a visible neighbour nor
 /// symmetry shows: such ends stay, and are listed.
+///
+/// Whatever is drawn, borders joined by a ruling of which one is the other's copy, to half a
+/// percent of the diagonal, are listed: they lie in parallel planes.
 ///
 /// @param snap  share of the drawing's diagonal within which ends meet
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,

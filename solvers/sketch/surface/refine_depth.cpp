@@ -72,22 +72,6 @@ struct SymmetryResidual {
   }
 };
 
-/// Blocks: nodes of both tangents and of the ruling. The linear row, true in space: the triple
-/// product over the lengths of the three drawn images, so that a ruling counts by how surely its
-/// image tells something.
-struct TripleProductResidual {
-  RulingForms forms;
-  double weight;  ///< with the diagonal, over the product of the images' lengths
-  template <class T>
-  bool operator()(T const* const* blocks, T* out) const {
-    const Vector3<T> t1 = form_value(forms.t1, blocks, 0);
-    const Vector3<T> t2 = form_value(forms.t2, blocks, forms.t1.size());
-    const Vector3<T> r = form_value(forms.r, blocks, forms.t1.size() + forms.t2.size());
-    out[0] = T(weight) * t1.cross(t2).dot(r);
-    return true;
-  }
-};
-
 /// Blocks: nodes of both tangents and of the ruling.
 struct TangentPlaneResidual {
   RulingForms forms;
@@ -318,14 +302,7 @@ void Refinement::add_tangent_planes() {
       append(forms.t1, blocks);
       append(forms.t2, blocks);
       append(forms.r, blocks);
-      if (refine_.angles) {
-        add_dynamic(TangentPlaneResidual{forms, weight}, blocks, false, 1);
-        continue;
-      }
-      const CurveNet& net = problem_.net;
-      const double lengths = evaluate(net, forms.t1).norm() * evaluate(net, forms.t2).norm() *
-                             evaluate(net, forms.r).norm();
-      add_dynamic(TripleProductResidual{forms, weight / lengths}, blocks, false, 1);
+      add_dynamic(TangentPlaneResidual{forms, weight}, blocks, false, 1);
     }
   }
 }
@@ -420,9 +397,6 @@ void describe(OptionVisitor& v, RefineOptions& o) {
          "weight of the right angle between the mirror plane's two vectors");
   weight("vector_ratio", o.vector_ratio,
          "weight of the given ratio of the plane's two vectors; 0: the ratio is found");
-  v.value("angles", o.angles,
-          {.doc = "whether the angle between tangent planes counts, for all rulings alike, and not "
-                  "the row of the linear system"});
   v.value("perspective", o.perspective, {.doc = "whether weak perspective is unknown too"});
   weight("flatness", o.flatness, "weight of having no perspective");
 }

@@ -15,7 +15,6 @@ struct RefineOptions {
   double accuracy = 30;
   double right_angle = 10;
   double vector_ratio = 0;
-  bool angles = true;
   bool perspective = false;
   double flatness = 1e-4;  ///< weight of no perspective, when it is unknown
 };

@@ -14,6 +14,8 @@ namespace {
 
 /// Ends of rulings are drawn onto borders by hand: they may miss by this many snapping distances.
 constexpr double kRulingReach = 2;
+/// And by this share of the diagonal, however finely ends are snapped.
+constexpr double kRulingHand = 0.03;
 
 /// A drawn ruling as nodes of two borders.
 struct DrawnRuling {
@@ -72,7 +74,7 @@ std::vector<int> borders_for_ruling(const CurveNet& net, const Stroke& stroke) {
 
 /// Places of the two ends on two different borders, with the least sum of distances.
 std::array<CurvePoint, 2> borders_of_ruling(const CurveNet& net, const Stroke& stroke) {
-  const double reach = kRulingReach * net.snap;
+  const double reach = std::max(kRulingReach * net.snap, kRulingHand * net.diagonal);
   const std::vector<int> borders = borders_for_ruling(net, stroke);
   const auto near = [&](bool front, int skip) {
     NearestOnNet best{{}, reach};
