@@ -775,7 +775,7 @@ CompletedView complete_borders(const View& view, const MirrorPlane& plane, doubl
                                Completion completion) {
   const bool marked = !strokes_of(view, StrokeKind::occlusion).empty();
   CompletedView drawn = as_drawn(view);
-  if (completion == Completion::none) return drawn;
+  if (completion == Completion::none || !(drawn.drawn_length > 0)) return drawn;
   if (marked) {
     drawn.copies = BorderCompletion(view, plane, snap, completion).parallel_borders();
     return drawn;

@@ -48,13 +48,23 @@ double depth_error(const SyntheticView& drawing, const OneViewResult& result) {
   return std::sqrt(sum / count) / drawing.height;
 }
 
-double depth_error(const SyntheticViewOptions& drawn, const OneViewOptions& options = {}) {
+/// The linear system alone, of what is drawn as it is drawn.
+OneViewOptions linear_system() {
+  OneViewOptions options;
+  options.refine.reset();
+  options.fair = false;
+  options.complete = Completion::none;
+  return options;
+}
+
+double depth_error(const SyntheticViewOptions& drawn,
+                   const OneViewOptions& options = linear_system()) {
   const SyntheticView drawing = synthetic_view(drawn);
   return depth_error(drawing, reconstruct_one_view(drawing.view, options));
 }
 
 OneViewOptions without_developability() {
-  OneViewOptions options;
+  OneViewOptions options = linear_system();
   options.depth.developability = 0;
   return options;
 }
@@ -115,7 +125,7 @@ TEST(OneView, DevelopabilityDoesNoHarmWherePairsSuffice) {
 
 // The thesis bounds cones by parallel planes. As a term it makes the frustum exact up to sampling.
 TEST(OneView, ParallelPlanesAsATermDetermineTheFrustum) {
-  OneViewOptions options;
+  OneViewOptions options = linear_system();
   options.depth.parallel_planes = 1;
   EXPECT_LT(depth_error({}, options), 0.0015);
 }
@@ -174,7 +184,7 @@ TEST(OneView, FrontOfTheLowerCircleIsEnough) {
   point.points = {drawing.view.strokes.front().points[60]};
   keep_front_of_lower_circle(drawing);
   drawing.view.strokes.push_back(point);
-  const OneViewResult result = reconstruct_one_view(drawing.view, {});
+  const OneViewResult result = reconstruct_one_view(drawing.view, linear_system());
   EXPECT_LT(depth_error(drawing, result), 0.02);
   ASSERT_EQ(result.rulings.size(), 1u);
   EXPECT_FALSE(result.rulings.front().around);
@@ -183,7 +193,7 @@ TEST(OneView, FrontOfTheLowerCircleIsEnough) {
 // Every corner of the tent is in a pair, and everything between is straight.
 TEST(OneView, TentIsExact) {
   const SyntheticView drawing = synthetic_view(tent());
-  const OneViewResult result = reconstruct_one_view(drawing.view, {});
+  const OneViewResult result = reconstruct_one_view(drawing.view, linear_system());
   EXPECT_LT(depth_error(drawing, result), 1e-5);
   EXPECT_EQ(result.patches.size(), 4u) << "two slopes, two gables";
   for (const OneViewPatch& patch : result.patches) EXPECT_TRUE(patch.flat) << patch.name;
@@ -195,14 +205,14 @@ TEST(OneView, PlanePanelsCarryDepthToCornersWithoutPairs) {
   SyntheticView drawing = synthetic_view(tent());
   std::erase_if(drawing.view.strokes, [](const Stroke& s) { return s.id == "pair-front"; });
   // The pair is drawn after all borders, so that the truth of these keeps its numbers.
-  EXPECT_LT(depth_error(drawing, reconstruct_one_view(drawing.view, {})), 1e-3);
+  EXPECT_LT(depth_error(drawing, reconstruct_one_view(drawing.view, linear_system())), 1e-3);
 }
 
 // Mirrored vertices coincide with vertices: the result is symmetric exactly, and welded.
 TEST(OneView, SurfaceIsSymmetricAndWelded) {
   for (const SyntheticViewOptions& drawn : {SyntheticViewOptions{}, tent()}) {
     const SyntheticView drawing = synthetic_view(drawn);
-    const OneViewResult result = reconstruct_one_view(drawing.view, {});
+    const OneViewResult result = reconstruct_one_view(drawing.view, linear_system());
     const TriMesh& mesh = result.surface.mesh;
     const auto half = mesh.F.rows() / 2;
     for (Eigen::Index t = 0; t < half; ++t) {
@@ -233,15 +243,15 @@ int border_loops(const TriMesh& mesh) {
 
 // A frustum is a band with two borders; a tent drawn with its gables lacks its floor only.
 TEST(OneView, SurfaceHasTheBordersOfTheShape) {
-  const OneViewResult frustum = reconstruct_one_view(synthetic_view({}).view, {});
+  const OneViewResult frustum = reconstruct_one_view(synthetic_view({}).view, linear_system());
   EXPECT_EQ(border_loops(frustum.surface.mesh), 2);
-  const OneViewResult house = reconstruct_one_view(synthetic_view(tent()).view, {});
+  const OneViewResult house = reconstruct_one_view(synthetic_view(tent()).view, linear_system());
   EXPECT_EQ(border_loops(house.surface.mesh), 1);
 }
 
 // The area of a frustum is pi (r1 + r2) s; a strip of chords lies inside it.
 TEST(OneView, FrustumHasItsArea) {
-  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, {});
+  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, linear_system());
   const double slant = std::hypot(1.5, 0.4);
   EXPECT_NEAR(triangle_areas(result.surface.mesh.V, result.surface.mesh.F).sum(),
               std::numbers::pi * 1.6 * slant, 0.02 * std::numbers::pi * 1.6 * slant);
@@ -249,7 +259,7 @@ TEST(OneView, FrustumHasItsArea) {
 
 // No interior vertex but those of cuts in the mirror plane: nothing to bend two ways.
 TEST(OneView, RuledStripUnrollsWithEveryEdgeItsLength) {
-  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, {});
+  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, linear_system());
   ASSERT_EQ(result.patches.size(), 1u);
   const OneViewPatch& patch = result.patches.front();
   for (Eigen::Index t = 0; t < patch.strip.triangles.rows(); ++t) {
@@ -265,7 +275,7 @@ TEST(OneView, RuledStripUnrollsWithEveryEdgeItsLength) {
 
 // A cone of radius r and apex distance rho unrolls into a sector of 2 pi r / rho.
 TEST(OneView, FrustumUnrollsIntoTheSectorOfItsCone) {
-  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, {});
+  const OneViewResult result = reconstruct_one_view(synthetic_view({}).view, linear_system());
   const OneViewPatch& patch = result.patches.front();
   const auto last = patch.unrolled.rows() - 1;
   const Eigen::RowVector2d from = patch.unrolled.row(1) - patch.unrolled.row(0);
@@ -281,7 +291,7 @@ TEST(OneView, FrustumUnrollsIntoTheSectorOfItsCone) {
 TEST(OneView, HiddenHalfHasTheTextureOfTheVisibleOne) {
   SyntheticView drawing = synthetic_view({});
   drawing.view.picture = {.file = "photo.png", .content = {}, .origin = {-2, -2}, .size = {4, 5}};
-  const OneViewResult result = reconstruct_one_view(drawing.view, {});
+  const OneViewResult result = reconstruct_one_view(drawing.view, linear_system());
   const TexturedSurface& surface = result.surface;
   const auto half = surface.mesh.F.rows() / 2;
   for (Eigen::Index t = 0; t < half; ++t) {
@@ -296,21 +306,21 @@ TEST(OneView, HiddenHalfHasTheTextureOfTheVisibleOne) {
 
 TEST(OneView, OtherReadingOfThePictureIsMirroredInDepth) {
   SyntheticView drawing = synthetic_view(tent());
-  const OneViewResult one = reconstruct_one_view(drawing.view, {});
+  const OneViewResult one = reconstruct_one_view(drawing.view, linear_system());
   for (Stroke& stroke : drawing.view.strokes) {
     stroke.side = stroke.side == DepthSide::front ? DepthSide::back : DepthSide::front;
   }
-  const OneViewResult other = reconstruct_one_view(drawing.view, {});
+  const OneViewResult other = reconstruct_one_view(drawing.view, linear_system());
   EXPECT_LT((one.planes.other.normal - other.planes.chosen.normal).norm(), 1e-12);
   EXPECT_LT((one.depth.nodes.col(2) + other.depth.nodes.col(2)).norm(), 1e-6);
 }
 
 TEST(OneView, IsTheSameInEveryUnit) {
   SyntheticView drawing = synthetic_view({});
-  const OneViewResult one = reconstruct_one_view(drawing.view, {});
+  const OneViewResult one = reconstruct_one_view(drawing.view, linear_system());
   for (Stroke& stroke : drawing.view.strokes)
     for (Eigen::Vector2d& p : stroke.points) p *= 1000;
-  const OneViewResult other = reconstruct_one_view(drawing.view, {});
+  const OneViewResult other = reconstruct_one_view(drawing.view, linear_system());
   EXPECT_LT((one.depth.nodes - other.depth.nodes / 1000).norm(), 1e-6);
   EXPECT_NEAR(one.depth.condition / other.depth.condition, 1, 1e-3);
 }

@@ -34,8 +34,12 @@ double depth_share(const SyntheticView& drawing, const OneViewResult& result) {
   return geoprior::depth_error(points, places, Eigen::Vector3d::UnitZ(), drawing.height).share;
 }
 
+/// The linear system alone, of the points as they are drawn.
 OneViewOptions linear_options() {
   OneViewOptions options;
+  options.refine.reset();
+  options.fair = false;
+  options.depth.copied_planes = 0;
   options.curves.snap = 0.008;
   options.pair_tolerance = 0.3;
   return options;
