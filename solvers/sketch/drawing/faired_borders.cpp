@@ -18,7 +18,7 @@ constexpr double kUneven = 3.5;
 /// Of the estimated noise: by which points are moved.
 constexpr double kMoved = 0.92;
 /// Of the borders' diagonal: below it nothing trembles.
-constexpr double kLeastTremor = 5e-4;
+constexpr double kLeastTremor = 2e-4;
 constexpr double kFairCorner = 60 * kDegree;
 constexpr int kCornerPoints = 5;
 
