@@ -60,7 +60,7 @@ class SmoothingSpline {
   /// Minimises for these corners; the other members speak of the last one.
   void solve(int step, const std::vector<int>& corners) {
     lambda_ = lambda_of(step);
-    free_.assign(n_, closed_ ? 0 : 1);
+    free_.assign(n_, static_cast<char>(closed_ ? 0 : 1));
     if (!closed_) std::fill(free_.begin() + 1, free_.end() - 1, char{0});
     for (const int c : corners) free_[c] = 1;
     std::vector<Eigen::Triplet<double>> entries;

@@ -36,7 +36,7 @@ struct FairedStroke {
 /// @param points  closed: the last is joined to the first
 /// @return        nothing for a stroke that is not noisy, which is one of few points, or of few
 ///                changes between left and right turns
-/// Sources: Reinsch 1967 (the functional); Burman, Chow and Nolan 1994 (blocks left out).
+/// Source: Reinsch 1967 (the functional); Burman, Chow and Nolan 1994 (blocks left out).
 std::optional<FairedStroke> fair_stroke(const std::vector<Eigen::Vector2d>& points, bool closed);
 
 /// Whether a stroke turns to and fro as only a trembling hand does: often, and by no small angles.

@@ -23,7 +23,7 @@ Points chain_of(const Stroke& stroke) {
 struct OnLine {
   double distance = 0, along = 0;
 };
-OnLine on_line(const Points& chain, const Eigen::Vector2d& x) {
+OnLine place_on_line(const Points& chain, const Eigen::Vector2d& x) {
   const BesideStroke at = beside(chain, x);
   const double along = std::clamp(at.along, 0.0, length(chain));
   return {(point_along(chain, along) - x).norm(), along};
@@ -35,7 +35,7 @@ bool lies_along(const Points& stretch, double from, double to, const Points& oth
   int off = 0;
   for (int i = 0; i < kSamples; ++i) {
     const double at = from + (to - from) * (i + 0.5) / kSamples;
-    if (on_line(other, point_along(stretch, at)).distance > near) ++off;
+    if (place_on_line(other, point_along(stretch, at)).distance > near) ++off;
   }
   return off <= kMayStray;
 }
@@ -57,7 +57,7 @@ void leave_out_doubles(std::vector<Stroke>& strokes, double near,
       continue;
     }
     repairs.push_back({strokes[i].id, "lies along '" + twin->id + "', and is left out",
-                       chain.front(), on_line(chain_of(*twin), chain.front()).distance});
+                       chain.front(), place_on_line(chain_of(*twin), chain.front()).distance});
     strokes.erase(strokes.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
@@ -96,7 +96,7 @@ std::optional<double> overlap_from(const Stroke& stroke, const Stroke& other,
   const double first = own ? whole / 2 : 0;
   const Points tail = own ? stretch_of(stroke.points, first, whole) : stroke.points;
   const Points line = own ? stretch_of(stroke.points, 0, first) : other.points;
-  const OnLine from = on_line(tail, end_of_other);
+  const OnLine from = place_on_line(tail, end_of_other);
   const double at = first + from.along, over = whole - at;
   constexpr double kMost = 0.45;
   if (from.distance > near || over < near / 4 || over > kMost * whole) return std::nullopt;

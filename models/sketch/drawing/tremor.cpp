@@ -1,5 +1,6 @@
 #include "models/sketch/drawing/tremor.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -26,12 +26,12 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-Points loop_of(Points points) {
+Points closed_chain(Points points) {
   points.push_back(points.front());
   return points;
 }
 
-double diagonal_of(const Points& points) {
+double box_diagonal(const Points& points) {
   Eigen::Vector2d low = points[0], high = low;
   for (const Eigen::Vector2d& p : points) {
     low = low.cwiseMin(p);
@@ -40,7 +40,7 @@ double diagonal_of(const Points& points) {
   return (high - low).norm();
 }
 
-double distance_to(const Points& chain, const Eigen::Vector2d& x) {
+double distance_to_chain(const Points& chain, const Eigen::Vector2d& x) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     const Eigen::Vector2d along = chain[i + 1] - chain[i];
@@ -51,7 +51,7 @@ double distance_to(const Points& chain, const Eigen::Vector2d& x) {
   return std::sqrt(least);
 }
 
-Points dense(const Points& chain) {
+Points dense_points(const Points& chain) {
   Points points;
   const double whole = length(chain);
   constexpr int kCount = 600;
@@ -61,22 +61,24 @@ Points dense(const Points& chain) {
 
 /// Of two closed lines, over sigma = 1 % of the diagonal of the second.
 double hausdorff_in_sigmas(const Points& drawn, const Points& meant) {
-  const Points a = loop_of(drawn), b = loop_of(meant);
+  const Points a = closed_chain(drawn), b = closed_chain(meant);
   double farthest = 0;
-  for (const Eigen::Vector2d& x : dense(a)) farthest = std::max(farthest, distance_to(b, x));
-  for (const Eigen::Vector2d& x : dense(b)) farthest = std::max(farthest, distance_to(a, x));
-  for (const Eigen::Vector2d& x : meant) farthest = std::max(farthest, distance_to(a, x));
-  return farthest / (0.01 * diagonal_of(meant));
+  for (const Eigen::Vector2d& x : dense_points(a))
+    farthest = std::max(farthest, distance_to_chain(b, x));
+  for (const Eigen::Vector2d& x : dense_points(b))
+    farthest = std::max(farthest, distance_to_chain(a, x));
+  for (const Eigen::Vector2d& x : meant) farthest = std::max(farthest, distance_to_chain(a, x));
+  return farthest / (0.01 * box_diagonal(meant));
 }
 
-struct Silhouette {
+struct ShippedSilhouette {
   std::string name;
   Stroke stroke;
 };
 
 /// Of all drawings of several views in the repository.
-std::vector<Silhouette> shipped_silhouettes() {
-  std::vector<Silhouette> found;
+std::vector<ShippedSilhouette> shipped_silhouettes() {
+  std::vector<ShippedSilhouette> found;
   for (const char* name : {"boot", "coat", "hat-1", "purse", "tunic"}) {
     const std::filesystem::path file = std::filesystem::path(GEOPRIOR_SOURCE_DIR) /
                                        "experiments/sketch" / (std::string(name) + ".svg");
@@ -90,15 +92,15 @@ std::vector<Silhouette> shipped_silhouettes() {
 
 /// A hand that does not stop where it began: the ends meet halfway.
 Points drawn_by_hand(const Stroke& meant, const TremorOptions& tremor, int seed) {
-  Points points = with_tremor(meant, diagonal_of(meant.points), tremor, seed).points;
+  Points points = with_tremor(meant, box_diagonal(meant.points), tremor, seed).points;
   points.front() = (points.front() + points.back()) / 2;
   points.pop_back();
   return points;
 }
 
 /// Rival: a moving average whose weights are a normal distribution along the line.
-Points averaged(const Points& points, double width) {
-  const Points chain = loop_of(points);
+Points averaged_along(const Points& points, double width) {
+  const Points chain = closed_chain(points);
   const double whole = length(chain);
   constexpr int kCount = 400;
   Points even;
@@ -119,24 +121,24 @@ Points averaged(const Points& points, double width) {
   return result;
 }
 
-struct Spread {
+struct DistanceSpread {
   double median = 0, worst = 0;
 };
-Spread spread_of(std::vector<double> values) {
+DistanceSpread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return {values[values.size() / 2], values.back()};
 }
 
 /// Over silhouettes and seeds: faired, raw, and averaged with the best of five widths for all.
-struct Comparison {
-  Spread faired, raw, rival;
+struct FairingComparison {
+  DistanceSpread faired, raw, rival;
   double within = 0;  ///< share of the strokes that end within 0.6 sigma
 };
-Comparison compare(const TremorOptions& tremor, int first_seed, int seeds) {
+FairingComparison compare_fairing(const TremorOptions& tremor, int first_seed, int seeds) {
   constexpr std::array<double, 5> kWidths{0.004, 0.007, 0.01, 0.015, 0.02};  // of the raw length
   std::vector<double> faired, raw;
   std::array<std::vector<double>, 5> rivals;
-  for (const Silhouette& shape : shipped_silhouettes()) {
+  for (const ShippedSilhouette& shape : shipped_silhouettes()) {
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
       const Points drawn = drawn_by_hand(shape.stroke, tremor, seed);
       const auto fair = fair_stroke(drawn, true);
@@ -146,11 +148,11 @@ Comparison compare(const TremorOptions& tremor, int first_seed, int seeds) {
       raw.push_back(hausdorff_in_sigmas(drawn, shape.stroke.points));
       for (std::size_t w = 0; w < kWidths.size(); ++w) {
         rivals[w].push_back(hausdorff_in_sigmas(
-            averaged(drawn, kWidths[w] * length(loop_of(drawn))), shape.stroke.points));
+            averaged_along(drawn, kWidths[w] * length(closed_chain(drawn))), shape.stroke.points));
       }
     }
   }
-  Comparison all{spread_of(faired), spread_of(raw), spread_of(rivals[0])};
+  FairingComparison all{spread_of(faired), spread_of(raw), spread_of(rivals[0])};
   for (const auto& rival : rivals) {
     if (spread_of(rival).median < all.rival.median) all.rival = spread_of(rival);
   }
@@ -160,8 +162,8 @@ Comparison compare(const TremorOptions& tremor, int first_seed, int seeds) {
   return all;
 }
 
-void report(const std::string& what, const Comparison& c) {
-  const auto text = [](const Spread& s) {
+void report_comparison(const std::string& what, const FairingComparison& c) {
+  const auto text = [](const DistanceSpread& s) {
     return std::to_string(s.median) + ", worst " + std::to_string(s.worst);
   };
   ::testing::Test::RecordProperty(what + " faired", text(c.faired));
@@ -175,7 +177,7 @@ void report(const std::string& what, const Comparison& c) {
 }
 
 TEST(FairStroke, LeavesWhatWasDrawnExactly) {
-  for (const Silhouette& shape : shipped_silhouettes())
+  for (const ShippedSilhouette& shape : shipped_silhouettes())
     EXPECT_FALSE(fair_stroke(shape.stroke.points, true)) << shape.name;
   Points circle, star;
   for (int i = 0; i < 720; ++i)
@@ -199,7 +201,7 @@ TEST(FairStroke, TakesTheTremorOffACircle) {
     ASSERT_TRUE(fair);
     EXPECT_LE(hausdorff_in_sigmas(fair->points, circle.points), 0.6) << "seed " << seed;
     EXPECT_TRUE(fair->corners.empty());
-    EXPECT_NEAR(fair->noise / (0.01 * diagonal_of(circle.points)), 1, 0.2);
+    EXPECT_NEAR(fair->noise / (0.01 * box_diagonal(circle.points)), 1, 0.2);
   }
 }
 
@@ -208,9 +210,9 @@ TEST(FairStroke, KeepsTheCornersOfASquare) {
   for (int seed = 1; seed <= 3; ++seed) {
     const auto fair = fair_stroke(drawn_by_hand(square, {}, seed), true);
     ASSERT_TRUE(fair);
-    const Points line = loop_of(fair->points);
+    const Points line = closed_chain(fair->points);
     for (const Eigen::Vector2d& corner : square.points)
-      EXPECT_LT(distance_to(line, corner), 0.01 * std::sqrt(2.0)) << "seed " << seed;
+      EXPECT_LT(distance_to_chain(line, corner), 0.01 * std::sqrt(2.0)) << "seed " << seed;
     EXPECT_GE(fair->corners.size(), 4U);
   }
 }
@@ -226,8 +228,8 @@ TEST(FairStroke, KeepsTheEndsOfAnOpenStroke) {
 // Half of them end within 0.6 sigma of what was meant; raw ones at 3. Worse ones have corners whose
 // sides are as short as some waves of the tremor.
 TEST(FairStroke, EndsNearWhatWasMeant) {
-  const Comparison c = compare({}, 12, 1);
-  report("tremor", c);
+  const FairingComparison c = compare_fairing({}, 12, 1);
+  report_comparison("tremor", c);
   EXPECT_LE(c.faired.median, 0.75);
   EXPECT_LE(c.faired.worst, 1.6);
   EXPECT_GE(c.raw.median, 2.5);
@@ -237,10 +239,10 @@ TEST(FairStroke, EndsNearWhatWasMeant) {
 using LongFairStroke = ::testing::Test;
 TEST_F(LongFairStroke, TenSeedsOfAllSilhouettes) {
   if (!test::at_length()) GTEST_SKIP() << "with GEOPRIOR_LONG";
-  report("tremor, wave of 3 %", compare({}, 2, 10));
-  report("wave of 2 %", compare({.wavelength = 0.02}, 2, 10));
-  report("wave of 5 %", compare({.wavelength = 0.05}, 2, 10));
-  report("wave of 3 %, wide band", compare({.band = 0.4}, 2, 10));
+  report_comparison("tremor, wave of 3 %", compare_fairing({}, 2, 10));
+  report_comparison("wave of 2 %", compare_fairing({.wavelength = 0.02}, 2, 10));
+  report_comparison("wave of 5 %", compare_fairing({.wavelength = 0.05}, 2, 10));
+  report_comparison("wave of 3 %, wide band", compare_fairing({.band = 0.4}, 2, 10));
 }
 
 }  // namespace
