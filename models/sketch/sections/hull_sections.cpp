@@ -18,7 +18,9 @@ SectionReport::Tubes report_of(const TubeSections& tubes, const std::vector<Rim>
   report.axis = tubes.axis();
   report.count = tubes.tubes();
   for (const Rim& rim : rims) {
-    if (rim.axis == tubes.axis()) report.rims.push_back(rim.id);
+    const bool is_new =
+        std::find(report.rims.begin(), report.rims.end(), rim.id) == report.rims.end();
+    if (rim.axis == tubes.axis() && is_new) report.rims.push_back(rim.id);
   }
   for (const QuadrantExponents& exponents : tubes.exponents()) {
     for (const double n : exponents) {
@@ -89,15 +91,16 @@ double SectionBounds::value(const Eigen::Vector3d& x) const {
 
 Eigen::Vector3d SectionBounds::moved_on(const Eigen::Vector3d& x, double step) const {
   if (top_) return top_->moved_on(x);
-  const double here = value(x), h = 1e-4 * step;
-  if (!std::isfinite(here)) return x;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  for (int c = 0; c < 3; ++c) {
-    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-    shift[c] = h;
-    const double after = value(x + shift), before = value(x - shift);
-    if (std::isfinite(after) && std::isfinite(before)) gradient[c] = (after - before) / (2 * h);
+  const TubeSections* outermost = nullptr;
+  double here = -std::numeric_limits<double>::infinity();
+  for (const TubeSections& tubes : tubes_) {
+    const double value = tubes.value(x);
+    if (value <= here) continue;
+    here = value;
+    outermost = &tubes;
   }
+  if (outermost == nullptr || std::abs(here) < 1e-7 * step) return x;
+  const Eigen::Vector3d gradient = outermost->gradient(x, 1e-4 * step);
   if (gradient.squaredNorm() < 1e-12) return x;
   Eigen::Vector3d move = -here / gradient.squaredNorm() * gradient;
   if (move.norm() > step) move *= step / move.norm();

@@ -24,6 +24,9 @@ ViewSlices heights_of(const std::vector<OutlinedView>& views, ViewKind kind,
 }
 
 constexpr int kHeights = 200;
+/// Sections are larger than the widths by this share, and cut by the views: these keep a strip of
+/// their own along their silhouettes, which lies on them exactly.
+constexpr double kTopSlack = 0.002;
 
 }  // namespace
 
@@ -34,8 +37,9 @@ TopSections::TopSections(const std::vector<OutlinedView>& views, const std::vect
 
 TopSections::AtHeight TopSections::at(double y) const {
   const Slice x = front_.extent_at(y), z = side_.extent_at(y);
-  return {{x.low, -z.high},
-          (top_.highest() - top_.lowest()).cwiseQuotient(Eigen::Vector2d(x.width(), z.width()))};
+  const Eigen::Vector2d size = (1 + kTopSlack) * Eigen::Vector2d(x.width(), z.width());
+  return {Eigen::Vector2d(x.middle(), -z.middle()) - 0.5 * size,
+          (top_.highest() - top_.lowest()).cwiseQuotient(size)};
 }
 
 double TopSections::distance(const AtHeight& at, const Eigen::Vector2d& q) const {
@@ -74,16 +78,14 @@ std::string TopSections::contradiction() const {
 bool TopSections::fills_top_view() const {
   constexpr int kPlaces = 256;
   constexpr double kLeastShare = 0.99;
-  const double inset = 0.002 * top_.diagonal();
   std::vector<AtHeight> heights;
   const double low = front_.first(), step = (front_.last() - low) / kHeights;
-  for (int i = 0; i < kHeights; ++i) heights.push_back(at(low + (i + 0.5) * step));
+  for (int i = 0; i <= kHeights; ++i) heights.push_back(at(low + i * step));
   int filled = 0;
   for (int i = 0; i < kPlaces; ++i) {
     const Eigen::Vector2d on = top_.at(top_.length() * (i + 0.5) / kPlaces);
-    const Eigen::Vector2d seen = on - inset * top_.nearest(on).normal;
     const bool is_filled = std::any_of(heights.begin(), heights.end(),
-                                       [&](const AtHeight& at) { return distance(at, seen) <= 0; });
+                                       [&](const AtHeight& at) { return distance(at, on) <= 0; });
     if (is_filled) ++filled;
   }
   return filled >= kLeastShare * kPlaces;

@@ -8,8 +8,9 @@
 namespace geoprior::sketch {
 
 /// The outline of the top view, scaled at every height to the widths of the views from the front
-/// and from the side. Right is x in front and top; it is -z from the side, which is up in the top
-/// view.
+/// and from the side, and a fifth of a percent larger, so that the silhouettes of all views cut
+/// them and lie on the hull in strips. Right is x in front and top; it is -z from the side, which
+/// is up in the top view.
 class TopSections {
  public:
   /// @throws Error  without all three views

@@ -11,6 +11,9 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr int kSectionSamples = 400;
+/// Sections are larger than the widths by this share, and cut by the views: these keep a strip of
+/// their own along their silhouettes, which lies on them exactly.
+constexpr double kSectionSlack = 0.005;
 constexpr double kVisibleShare = 0.6;  ///< of the widest part, from which a part is seen beside it
 
 double half_width(const Slice& s) { return std::max(0.5 * s.width(), 1e-12); }
@@ -25,13 +28,15 @@ double superellipse_norm(double u, double v, double n) {
   return large * std::pow(1 + std::pow(small / large, n), 1 / n);
 }
 
-/// The exponent whose superellipse passes through a point of the box, by bisection.
+/// The exponent whose superellipse, nearly as large as the slack allows, passes through a point of
+/// the box, by bisection.
 double exponent_through(double u, double v) {
+  constexpr double kNorm = 1 + 0.8 * kSectionSlack;
   double low = 1, high = 4 * kBoxExponent;
-  if (superellipse_norm(u, v, high) > 1) return std::numeric_limits<double>::infinity();
+  if (superellipse_norm(u, v, high) > kNorm) return std::numeric_limits<double>::infinity();
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
-    (superellipse_norm(u, v, middle) > 1 ? low : high) = middle;
+    (superellipse_norm(u, v, middle) > kNorm ? low : high) = middle;
   }
   return high;
 }
@@ -74,7 +79,8 @@ double TubeSection::value(double p, double q) const {
   const double u = (p - nearest->p.middle()) / a, v = (q - nearest->q.middle()) / b;
   const double n = exponents[nearest->tube][quadrant(u, v)] / nearest->round;
   if (n > kBoxExponent && !nearest->hidden) return kNone;
-  return (superellipse_norm(u, v, std::min(n, 4 * kBoxExponent)) - 1) * std::min(a, b);
+  const double norm = superellipse_norm(u, v, std::min(n, 4 * kBoxExponent));
+  return (norm / (1 + kSectionSlack) - 1) * std::min(a, b);
 }
 
 const OutlinedView& TubeSections::showing(const std::vector<OutlinedView>& views, int axis,
@@ -218,6 +224,18 @@ double TubeSections::value(const Eigen::Vector3d& x) const {
   return at(x[axis_]).value(x[first_across()], x[second_across()]);
 }
 
+Eigen::Vector3d TubeSections::gradient(const Eigen::Vector3d& x, double step) const {
+  const int p = first_across(), q = second_across();
+  const TubeSection here = at(x[axis_]), beyond = at(x[axis_] + step);
+  const double value = here.value(x[p], x[q]);
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  gradient[axis_] = (beyond.value(x[p], x[q]) - value) / step;
+  gradient[p] = (here.value(x[p] + step, x[q]) - value) / step;
+  gradient[q] = (here.value(x[p], x[q] + step) - value) / step;
+  for (double& g : gradient) g = std::isfinite(g) ? g : 0;
+  return gradient;
+}
+
 bool TubeSections::widens(const std::vector<Node>& path, const SectionPart& next) const {
   constexpr double kSteepest = 2.25, kWindow = 0.12, kAllowed = 0.03;
   const auto grows = [&](const Slice& from, const Slice& to, double way, double width) {
@@ -311,7 +329,7 @@ void TubeSections::fill_end_view() {
   const ViewAxis to_p = view_axis(end_view_->frame, p), to_q = view_axis(end_view_->frame, 1 - p);
   const Outline& outline = end_view_->outline;
   constexpr int kPlaces = 512;
-  const double inset = 0.002 * outline.diagonal();
+  const double inset = 1e-6 * outline.diagonal();
   for (int i = 0; i < kPlaces; ++i) {
     const Eigen::Vector2d on = outline.at(outline.length() * (i + 0.5) / kPlaces);
     const Eigen::Vector2d seen = on - inset * outline.nearest(on).normal;
@@ -323,13 +341,15 @@ void TubeSections::fill_end_view() {
 void TubeSections::fill(const Eigen::Vector2d& seen) {
   double least = std::numeric_limits<double>::infinity();
   int tube = -1, where = 0;
-  for (int k = 0; k < kSectionSamples; k += 2) {
-    if (samples_[k].empty()) continue;
-    for (const SectionPart& part : samples_[k]) {
-      if (outside(part.p, seen.x()) > 0 || outside(part.q, seen.y()) > 0) continue;
+  const auto share = [](double x, const Slice& s) { return (x - s.middle()) / half_width(s); };
+  constexpr double kBeyond = 1 + kSectionSlack;  // samples lie beside the widest place
+  for (const std::vector<SectionPart>& parts : samples_) {
+    for (const SectionPart& part : parts) {
+      double u = share(seen.x(), part.p), v = share(seen.y(), part.q);
+      if (std::abs(u) > kBeyond || std::abs(v) > kBeyond) continue;
       if (part.round < 0.3) return;
-      const double u = (seen.x() - part.p.middle()) / half_width(part.p);
-      const double v = (seen.y() - part.q.middle()) / half_width(part.q);
+      u = std::clamp(u, -1.0, 1.0);
+      v = std::clamp(v, -1.0, 1.0);
       const double n = exponent_through(u, v) * part.round;
       if (n <= exponents_[part.tube][quadrant(u, v)]) return;
       if (n >= least) continue;

@@ -47,8 +47,10 @@ struct TubeSection {
 /// widest hides it; neither does a view that is missing. It gets that of a circular tube, the
 /// branch's own width times the cosine of its tilt, within what the views leave.
 ///
-/// The exponent is 2, but that a view from the end of the axis, where there is one, must see all of
-/// its silhouette filled: exponents grow, quadrant by quadrant, until it is, up to the box.
+/// Sections are half a percent larger than the widths, so that the views' silhouettes cut them and
+/// lie on the hull in strips, exactly. The exponent is 2, but that a view from the end of the axis,
+/// where there is one, must see all of its silhouette filled: exponents grow, quadrant by quadrant,
+/// until it is, up to the box.
 class TubeSections {
  public:
   /// @param rims  those of this axis count; at least one
@@ -60,6 +62,8 @@ class TubeSections {
   [[nodiscard]] TubeSection at(double along) const;
   /// As TubeSection::value, at a point of space.
   [[nodiscard]] double value(const Eigen::Vector3d& x) const;
+  /// Its change, by differences over a step; 0 along axes on which it is not finite.
+  [[nodiscard]] Eigen::Vector3d gradient(const Eigen::Vector3d& x, double step) const;
   /// Exponents of the tubes; tubes of several rims are one.
   [[nodiscard]] const std::vector<QuadrantExponents>& exponents() const { return exponents_; }
   /// Whether a view from the end of the axis was there to bound them.

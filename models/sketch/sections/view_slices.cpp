@@ -1,6 +1,7 @@
 #include "models/sketch/sections/view_slices.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -146,11 +147,10 @@ namespace {
 
 /// A drawn border as a rim, its axis not chosen yet; nothing where it is none.
 std::optional<Rim> rim_of_border(const Stroke& stroke, const OutlinedView& view, int number) {
-  constexpr double kMostCurved = 1.4;  // a half circle has pi / 2
   if (stroke.inside || stroke.closed || stroke.points.size() < 2) return {};
   Rim rim{stroke.id, number, stroke.points};
   const Eigen::Vector2d chord = rim.points.back() - rim.points.front();
-  if (length(rim.points) > kMostCurved * chord.norm()) return {};
+  if (!(chord.norm() > 0)) return {};
   const Eigen::Vector2d middle = point_along(rim.points, 0.5 * length(rim.points));
   rim.outward = Eigen::Vector2d(-chord.y(), chord.x()).normalized();
   if (rim.outward.dot(view.outline.nearest(middle).normal) < 0) rim.outward *= -1;
@@ -180,15 +180,23 @@ double axis_score(const Rim& rim, int coordinate, const std::vector<OutlinedView
 }  // namespace
 
 std::vector<Rim> rims_of(const Drawing& aligned, const std::vector<OutlinedView>& views) {
-  std::vector<Rim> rims;
+  constexpr double kEdgeOn = 1.15, kMostCurved = 1.6;  // length over chord; a half circle: pi / 2
+  std::vector<Rim> rims, oblique;
+  std::array<bool, 3> used{};
   for (int v = 0; v < std::ssize(views); ++v) {
     for (const Stroke* stroke : strokes_of(*aligned.find(views[v].kind), StrokeKind::border)) {
       std::optional<Rim> rim = rim_of_border(*stroke, views[v], v);
       if (!rim) continue;
+      const double curved = length(rim->points) / (rim->points.front() - rim->points.back()).norm();
+      if (curved > kMostCurved) continue;
       const int c = axis_score(*rim, 0, views) > axis_score(*rim, 1, views) ? 0 : 1;
       rim->axis = view_axis(views[v].frame, c).axis;
-      rims.push_back(std::move(*rim));
+      if (curved < kEdgeOn) used[rim->axis] = true;
+      (curved < kEdgeOn ? rims : oblique).push_back(std::move(*rim));
     }
+  }
+  for (Rim& rim : oblique) {
+    if (used[rim.axis]) rims.push_back(std::move(rim));
   }
   return rims;
 }

@@ -70,7 +70,9 @@ class ViewSlices {
 
 /// Borders that end tubes, with the axes of these: the axis of space that the rim is most nearly
 /// orthogonal to, unless other parts hide the tube's width there in the view or no second view
-/// shows that axis. A slit, a closed border, and one that follows a silhouette around are no rims.
+/// shows that axis. A bent rim is one that is seen obliquely: it counts where a straighter one says
+/// so, in another view. A slit, a closed border, and one that follows a silhouette around are no
+/// rims.
 std::vector<Rim> rims_of(const Drawing& aligned, const std::vector<OutlinedView>& views);
 
 }  // namespace geoprior::sketch

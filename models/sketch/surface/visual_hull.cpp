@@ -149,6 +149,7 @@ class SilhouetteFit {
       on_section = !add_faces_at(crossing, runs) || on_section;
     // Two faces that are not at right angles are met in turns.
     for (int pass = 0; pass < 8; ++pass) {
+      const Eigen::Vector3d before = x;
       for (std::size_t v = 0; v < views_.size(); ++v) {
         if (runs[v].empty()) continue;
         const Eigen::Vector2d q = views_[v].project(x);
@@ -159,13 +160,14 @@ class SilhouetteFit {
         x += views_[v].frame.topRows<2>().transpose() * (to - q);
       }
       if (on_section) x = sections_.moved_on(x, spacing_);
+      if (x == before) break;
     }
     return inside(x);
   }
 
  private:
   /// Adds the runs of all silhouettes that a point of the hull is on; views may share a face.
-  /// @return  false for a point that is inside all of them: on a section
+  /// @return  false for a point that is farther out in the sections: it is on one of them
   bool add_faces_at(const Eigen::Vector3d& x, std::vector<std::set<std::size_t>>& runs) const {
     std::vector<Outline::Nearest> nearest;
     double outermost = -std::numeric_limits<double>::infinity();
@@ -173,7 +175,7 @@ class SilhouetteFit {
       nearest.push_back(view.outline.nearest(view.project(x)));
       outermost = std::max(outermost, nearest.back().distance);
     }
-    if (!sections_.empty() && outermost < -same_) return false;
+    if (!sections_.empty() && sections_.value(x) > outermost + same_) return false;
     for (std::size_t v = 0; v < views_.size(); ++v) {
       if (nearest[v].distance < outermost - same_) continue;
       const std::vector<double>& corners = corners_[v];

@@ -122,7 +122,7 @@ TEST(HullSections, OfTheTopViewAreRoundWhereItIsRound) {
     }
     return most;
   };
-  EXPECT_LT(worst(HullSections::top), 2e-4);    // chords of the outline and of the grid
+  EXPECT_LT(worst(HullSections::top), 4e-4);  // chords, and sections that are 0.2 % larger
   EXPECT_GT(worst(HullSections::box), 0.01);  // sqrt 2 times the radius at the top, less
 }
 
