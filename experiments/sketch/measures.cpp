@@ -26,16 +26,6 @@ TriMesh surface_mesh(const Frame& frame) {
   return {part.points, part.triangles};
 }
 
-/// Largest relative difference of two stretches that are sewn together.
-std::optional<double> largest_mismatch(const Frame& frame) {
-  std::optional<double> largest;
-  for (const auto& [left, right] : sewn_lines(frame))
-    largest = std::max(largest.value_or(0), seam_mismatch(left, right).relative);
-  return largest;
-}
-
-}  // namespace
-
 /// Length of the edges both of whose ends are marked.
 double length_between(const TriMesh& mesh, const std::vector<bool>& marked) {
   double length = 0;
@@ -45,6 +35,16 @@ double length_between(const TriMesh& mesh, const std::vector<bool>& marked) {
   }
   return length;
 }
+
+/// Largest relative difference of two stretches that are sewn together.
+std::optional<double> largest_mismatch(const Frame& frame) {
+  std::optional<double> largest;
+  for (const auto& [left, right] : sewn_lines(frame))
+    largest = std::max(largest.value_or(0), seam_mismatch(left, right).relative);
+  return largest;
+}
+
+}  // namespace
 
 std::vector<FlatPiece> flat_pieces(const Frame& frame) {
   const Part& pattern = frame.require_part("pattern", Part::Kind::triangles);

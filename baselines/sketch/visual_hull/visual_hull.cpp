@@ -36,17 +36,13 @@ std::unique_ptr<Process> make_visual_hull_process(const SketchInput& input,
                                                   const VisualHullOptions& options) {
   SketchInput seen = input;
   if (options.boxes) seen.hull.sections = HullSections::box;
+  if (options.double_steps) seen.smoothing.double_steps = *options.double_steps;
   return make_sketch_process(seen, 0, [options](const PreparedSketch& prepared, RunContext&) {
-    return std::make_unique<ShownHull>(options.smoothed ? prepared.start
-                                                        : prepared.surface.hull.mesh.V);
-    SketchInput other = input;
-    if (options.double_steps) other.smoothing.double_steps = *options.double_steps;
-    return make_sketch_process(other, 0, [options](const PreparedSketch& prepared, RunContext&) {
-      return std::make_unique<ShownHull>(
-          options.smoothed
-              ? prepared.start
-              : rounded_hull(prepared.surface, options.rounded * prepared.surface.hull.spacing));
-    });
+    return std::make_unique<ShownHull>(
+        options.smoothed
+            ? prepared.start
+            : rounded_hull(prepared.surface, options.rounded * prepared.surface.hull.spacing));
+  });
 }
 
 }  // namespace geoprior::sketch

@@ -291,10 +291,7 @@ void describe(OptionVisitor& v, HullOptions& o) {
   describe_choice(v, "sections", o.sections, kSections,
                   {.doc = "sections of the hull: decided by what is drawn, all that the views see, "
                           "or the top view's outline scaled to front and side"});
-                  {.doc = "horizontal sections: what the views see, or the top view's outline "
-                          "scaled to front and side"});
-                  v.value("ridges", o.ridges,
-                          {.doc = "whether edges of the mesh are flipped to run along ridges"});
+  v.value("ridges", o.ridges, {.doc = "whether edges of the mesh are flipped to run along ridges"});
 }
 
 std::vector<OutlinedView> outlined_views(const Drawing& aligned) {

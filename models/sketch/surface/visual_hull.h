@@ -22,7 +22,6 @@ enum class HullSections {
 struct HullOptions {
   int triangles = 8000;
   HullSections sections = HullSections::automatic;
-  HullSections sections = HullSections::views;
   bool ridges = true;  ///< edges are flipped to run along them
 };
 void describe(OptionVisitor& v, HullOptions& options);
