@@ -23,14 +23,16 @@ std::string formatted(const char* format, double value) {
   return text.data();
 }
 
-/// Arc length of a corner of the outline near to a place of it, or that place.
+/// Arc length of the sharpest corner of the outline near to a place of it, or that place.
+/// @param scale  length of the sides that a corner is told by (m)
 double corner_near(const Outline& outline, double at, double near, double scale) {
   constexpr double kCorner = 0.6;  // rad
-  constexpr int kSteps = 100;
+  const double whole = outline.length();
   double best = at, sharpest = kCorner;
-  for (int i = -kSteps; i <= kSteps; ++i) {
-    const double s = at + near * i / kSteps;
-    const Eigen::Vector2d here = outline.at(s);
+  for (int i = 0; i < std::ssize(outline.points()); ++i) {
+    const double s = outline.arc_length(i);
+    if (std::abs(std::remainder(s - at, whole)) > near) continue;
+    const Eigen::Vector2d here = outline.points()[i];
     const double turn =
         std::abs(signed_angle(here - outline.at(s - scale), outline.at(s + scale) - here));
     if (turn > sharpest) {
@@ -120,20 +122,27 @@ SilhouetteLoops HandDrawnView::silhouettes(const std::vector<Stroke>& strokes) c
   };
   Attempt exact = attempt(strokes, std::min(kExactSnap, options_.snap));
   if (exact.good) return accepted(exact);
-  Attempt loose = attempt(strokes, options_.snap);
+  // More is no hand's work, and all pairs are compared.
+  constexpr std::size_t kMostStrokes = 50, kMostPoints = 20000;
+  std::size_t points = 0;
+  for (const Stroke& stroke : strokes) points += stroke.points.size();
+  if (strokes.size() > kMostStrokes || points > kMostPoints) return accepted(exact);
+  const double near = options_.snap * diagonal_;
+  const auto repaired = [&](std::vector<Stroke> single, std::vector<StrokeRepair> repairs) {
+    for (StrokeRepair& repair : cut_overshoots(single, near)) repairs.push_back(std::move(repair));
+    Attempt made = attempt(single, options_.snap);
+    for (const StrokeRepair& repair : repairs) {
+      made.notes.push_back("stroke '" + repair.id + "' " + repair.what + " at " +
+                           place_text(repair.at) + ", by " + share_text(repair.moved));
+    }
+    return made;
+  };
+  Attempt loose = repaired(strokes, {});
   if (loose.good) return accepted(loose);
   std::vector<Stroke> single = strokes;
-  const std::vector<StrokeRepair> repairs = cut_double_strokes(single, options_.snap * diagonal_);
-  if (!repairs.empty()) {
-    Attempt repaired = attempt(single, options_.snap);
-    if (repaired.good) {
-      for (const StrokeRepair& repair : repairs) {
-        warnings_.push_back(where_ + ": stroke '" + repair.id + "' " + repair.what + " at " +
-                            place_text(repair.at) + ", by " + share_text(repair.moved));
-      }
-      return accepted(repaired);
-    }
-  }
+  std::vector<StrokeRepair> doubles = cut_double_strokes(single, near);
+  Attempt without_doubles = repaired(std::move(single), std::move(doubles));
+  if (without_doubles.good) return accepted(without_doubles);
   return accepted(exact.loops.gap ? loose : exact);
 }
 

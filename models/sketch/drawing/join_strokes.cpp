@@ -99,7 +99,7 @@ std::optional<double> overlap_from(const Stroke& stroke, const Stroke& other,
   const OnLine from = place_on_line(tail, end_of_other);
   const double at = first + from.along, over = whole - at;
   constexpr double kMost = 0.45;
-  if (from.distance > near || over < near / 4 || over > kMost * whole) return std::nullopt;
+  if (from.distance > near || over < near || over > kMost * whole) return std::nullopt;
   if (!lies_along(stroke.points, at, whole, line, near)) return std::nullopt;
   return at;
 }
@@ -130,14 +130,15 @@ void cut_overlaps(std::vector<Stroke>& strokes, double near, std::vector<StrokeR
 /// Where the last parts of two lines, seen from their last points, cross: arc lengths.
 std::optional<std::pair<double, double>> tail_crossing(const Points& a, const Points& b,
                                                        double reach) {
-  double before_a = length(a);
+  const double whole_a = length(a), whole_b = length(b);
+  double before_a = whole_a;
   for (std::size_t i = a.size() - 1; i > 0; --i) {
     const double step_a = (a[i] - a[i - 1]).norm();
-    if (length(a) - before_a > reach) break;
+    if (whole_a - before_a > reach) break;
     before_a -= step_a;
-    double before_b = length(b);
+    double before_b = whole_b;
     for (std::size_t j = b.size() - 1; j > 0; --j) {
-      if (length(b) - before_b > reach) break;
+      if (whole_b - before_b > reach) break;
       const double step_b = (b[j] - b[j - 1]).norm();
       before_b -= step_b;
       if (!segments_meet(a[i - 1], a[i], b[j - 1], b[j])) continue;
@@ -146,7 +147,7 @@ std::optional<std::pair<double, double>> tail_crossing(const Points& a, const Po
       if (turn == 0) continue;
       const double at_a = before_a + std::clamp(cross(w, v) / turn, 0.0, 1.0) * step_a;
       const double at_b = before_b + std::clamp(cross(w, u) / turn, 0.0, 1.0) * step_b;
-      if (length(a) - at_a <= reach && length(b) - at_b <= reach) return std::pair(at_a, at_b);
+      if (whole_a - at_a <= reach && whole_b - at_b <= reach) return std::pair(at_a, at_b);
     }
   }
   return std::nullopt;
@@ -186,7 +187,10 @@ void cut_pair(Stroke& a, bool at_end_a, Stroke& b, bool at_end_b, double near,
   b = std::move(other);
 }
 
-void cut_overshoots(std::vector<Stroke>& strokes, double near, std::vector<StrokeRepair>& repairs) {
+}  // namespace
+
+std::vector<StrokeRepair> cut_overshoots(std::vector<Stroke>& strokes, double near) {
+  std::vector<StrokeRepair> repairs;
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     if (strokes[i].closed) continue;
     cut_pair(strokes[i], true, strokes[i], false, near, repairs);
@@ -197,15 +201,13 @@ void cut_overshoots(std::vector<Stroke>& strokes, double near, std::vector<Strok
       }
     }
   }
+  return repairs;
 }
-
-}  // namespace
 
 std::vector<StrokeRepair> cut_double_strokes(std::vector<Stroke>& strokes, double near) {
   std::vector<StrokeRepair> repairs;
   leave_out_doubles(strokes, near, repairs);
   cut_overlaps(strokes, near, repairs);
-  cut_overshoots(strokes, near, repairs);
   return repairs;
 }
 
