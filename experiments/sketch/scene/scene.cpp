@@ -47,6 +47,22 @@ void tell_sections(const SketchSceneOptions& o, SketchScene& scene) {
   scene.load_warnings.push_back(sections.report().text());
 }
 
+std::vector<DrawnSilhouette> drawn_silhouettes(const Drawing& aligned) {
+  std::vector<DrawnSilhouette> silhouettes;
+  for (const OutlinedView& view : outlined_views(aligned))
+    silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+  return silhouettes;
+}
+
+/// Silhouettes of several views as they are drawn, and what is doubtful in them.
+void align_drawing(const SketchSceneOptions& o, SketchScene& scene) {
+  scene.aligned = align_views(scene.input.drawing, o.align, &scene.load_warnings);
+  for (std::string& doubt : doubtful_views(scene.aligned))
+    scene.load_warnings.push_back(std::move(doubt));
+  tell_sections(o, scene);
+  scene.silhouettes = drawn_silhouettes(scene.aligned);
+}
+
 void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& folder,
                   std::uint64_t seed, SketchScene& scene) {
   const std::filesystem::path file = find_file(o.drawing, folder, "data", "scene.drawing");
@@ -62,16 +78,11 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
     scene.input_files.push_back(photo);
   }
   if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
-  scene.aligned = align_views(scene.input.drawing, o.align, &scene.load_warnings);
-  for (std::string& doubt : doubtful_views(scene.aligned))
-    scene.load_warnings.push_back(std::move(doubt));
-  tell_sections(o, scene);
+  align_drawing(o, scene);
+  if (!how.tremor) return;
   // What a trembling hand meant is what the surface is measured against.
   how.tremor.reset();
-  const Drawing meant =
-      o.read.tremor ? align_views(read_drawing(file, how).drawing, o.align) : scene.aligned;
-  for (const OutlinedView& view : outlined_views(meant))
-    scene.silhouettes.push_back({view.kind, view.frame, view.outline.points()});
+  scene.silhouettes = drawn_silhouettes(align_views(read_drawing(file, how).drawing, o.align));
 }
 
 /// What a known drawing shows is its truth; without a file it is drawn here.
