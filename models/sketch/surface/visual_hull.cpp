@@ -162,7 +162,7 @@ class SilhouetteFit {
       if (on_section) x = sections_.moved_on(x, spacing_);
       if (x == before) break;
     }
-    return inside(x);
+    return sections_.empty() ? inside(x) : inside(on_touched_silhouettes(x));
   }
 
  private:
@@ -198,6 +198,18 @@ class SilhouetteFit {
       }
     }
     return best;
+  }
+
+  /// A round section touches a silhouette along a line between vertices. Those whose distance from
+  /// it is that of a chord of two edges, on a radius of one and a half edges or more, come onto it.
+  [[nodiscard]] Eigen::Vector3d on_touched_silhouettes(Eigen::Vector3d x) const {
+    for (const OutlinedView& view : views_) {
+      const Eigen::Vector2d q = view.project(x);
+      const Outline::Nearest nearest = view.outline.nearest(q);
+      if (nearest.distance > -0.08 * spacing_)
+        x += view.frame.topRows<2>().transpose() * (nearest.point - q);
+    }
+    return x;
   }
 
   /// What is outside of a silhouette comes in.
