@@ -56,6 +56,18 @@ Slice between(const Slice& a, const Slice& b, double share) {
           a.high_slope};
 }
 
+/// Extent of a rim along an axis of space.
+Slice rim_extent(const Rim& rim, const OutlinedView& view, int axis) {
+  const int c = view_axis(view.frame, 0).axis == axis ? 0 : 1;
+  const double sign = view_axis(view.frame, c).sign;
+  Slice extent{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Eigen::Vector2d& q : rim.points) {
+    extent.low = std::min(extent.low, sign * q[c]);
+    extent.high = std::max(extent.high, sign * q[c]);
+  }
+  return extent;
+}
+
 double widest_of(const std::vector<Slice>& slices) {
   double most = 0;
   for (const Slice& s : slices) most = std::max(most, s.width());
@@ -120,6 +132,8 @@ TubeSections::TubeSections(const std::vector<OutlinedView>& views, const std::ve
     end_.emplace(*end_view_, first_.across());
   }
   second_axis_ = 3 - axis - first_.across();
+  first_cuts_ = cuts_of_others(views, rims, showing_it[0]);
+  if (second_) second_cuts_ = cuts_of_others(views, rims, showing_it[1]);
   start_ = first_.first();
   double end = first_.last();
   if (second_) {
@@ -146,6 +160,24 @@ TubeSections::TubeSections(const std::vector<OutlinedView>& views, const std::ve
   end_view_ = nullptr;
 }
 
+std::vector<TubeSections::CutEnd> TubeSections::cuts_of_others(
+    const std::vector<OutlinedView>& views, const std::vector<Rim>& rims, int view) const {
+  std::vector<CutEnd> cuts;
+  for (const Rim& rim : rims) {
+    if (rim.axis != axis_ || rim.view == view) continue;
+    const Slice extent = rim_extent(rim, views[rim.view], axis_);
+    const bool is_drawn_here = std::any_of(rims.begin(), rims.end(), [&](const Rim& other) {
+      return other.axis == axis_ && other.view == view &&
+             rim_extent(other, views[view], axis_).overlap(extent) >= 0;
+    });
+    if (is_drawn_here) continue;
+    const int c = view_axis(views[rim.view].frame, 0).axis == axis_ ? 0 : 1;
+    const bool is_up = view_axis(views[rim.view].frame, c).sign * rim.outward[c] > 0;
+    cuts.push_back(is_up ? CutEnd{extent.low, extent.high} : CutEnd{extent.high, extent.low});
+  }
+  return cuts;
+}
+
 int TubeSections::tubes() const {
   std::set<int> used;
   for (const std::vector<SectionPart>& parts : samples_) {
@@ -165,8 +197,15 @@ Slice TubeSections::widest_from_end(double p) const {
 }
 
 std::vector<SectionPart> TubeSections::parts_at(double along) const {
+  const auto uncut = [along](const std::vector<CutEnd>& cuts) {
+    for (const CutEnd& cut : cuts) {
+      const auto [low, high] = std::minmax(cut.inner, cut.outer);
+      if (along > low && along < high) return cut.inner;
+    }
+    return along;
+  };
   std::vector<SectionPart> parts;
-  const std::vector<Slice> p = first_.at(along);
+  const std::vector<Slice> p = first_.at(uncut(first_cuts_));
   if (!second_) {
     for (const Slice& s : p) {
       const Slice seen = widest_from_end(s.middle());
@@ -174,7 +213,7 @@ std::vector<SectionPart> TubeSections::parts_at(double along) const {
     }
     return parts;
   }
-  const std::vector<Slice> q = second_->at(along);
+  const std::vector<Slice> q = second_->at(uncut(second_cuts_));
   const double widest_p = kVisibleShare * widest_of(p), widest_q = kVisibleShare * widest_of(q);
   if (p.size() > 1 && q.size() > 1) return parts;
   for (const Slice& a : p) {

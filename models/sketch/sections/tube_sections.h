@@ -75,6 +75,13 @@ class TubeSections {
   struct Node {
     int at = 0, part = 0;
   };
+  /// Where a slanted rim of the other view cuts the tube: from its place farther in to the
+  /// outermost.
+  struct CutEnd {
+    double inner = 0, outer = 0;
+  };
+  [[nodiscard]] std::vector<CutEnd> cuts_of_others(const std::vector<OutlinedView>& views,
+                                                   const std::vector<Rim>& rims, int view) const;
   static const OutlinedView& showing(const std::vector<OutlinedView>& views, int axis, int nth);
 
   [[nodiscard]] std::vector<SectionPart> parts_at(double along) const;
@@ -90,7 +97,9 @@ class TubeSections {
   int axis_ = 1;
   ViewSlices first_;
   std::optional<ViewSlices> second_;  ///< none: no second view shows the axis
-  std::optional<ViewSlices> end_;     ///< of the view along the axis, across the first's slices
+  /// Of each of both: there it shows the cut, not the tube, whose width is that farther in.
+  std::vector<CutEnd> first_cuts_, second_cuts_;
+  std::optional<ViewSlices> end_;  ///< of the view along the axis, across the first's slices
   const OutlinedView* end_view_ = nullptr;
   int second_axis_ = 2;
   double start_ = 0, step_ = 1;                    ///< of the samples (m)
