@@ -202,7 +202,7 @@ class CleanLines {
 };
 
 /// What a share of the total weight stays under.
-double weighted_quantile(std::vector<std::pair<double, double>>& value_weight, double share) {
+double length_quantile(std::vector<std::pair<double, double>>& value_weight, double share) {
   std::sort(value_weight.begin(), value_weight.end());
   double all = 0, sum = 0;
   for (const auto& [value, weight] : value_weight) all += weight;
@@ -241,7 +241,7 @@ CreaseMeasures crease_measures(const TriMesh& mesh, double crease,
     (clean[e] ? m.clean_length : saw) += clean[e] ? length : length * excess;
   }
   if (m.turning > 0) m.saw_share = saw / m.turning;
-  m.rest_p95 = weighted_quantile(rest, 0.95);
+  m.rest_p95 = length_quantile(rest, 0.95);
   return m;
 }
 

@@ -14,7 +14,8 @@ namespace geoprior::sketch {
 /// silhouette. The ball's centre is the point y nearest to x of { n_v . (y - x) + d_v <= -r for all
 /// v }, and x goes to y + r (x - y) / |x - y| where it is farther than r from y; four times, since
 /// silhouettes bend. Faces stay in place, so that silhouettes do but where a ridge carries them.
-/// Rims are not rounded: silhouettes are taken to go straight on beyond drawn borders. Of a hull
+/// Within r of a silhouette's own corner only the nearer of its two sides is seen. Rims are not
+/// rounded: silhouettes are taken to go straight on beyond drawn borders. Of a hull
 /// whose sections are those of the top view, only ridges between drawn silhouettes are rounded.
 ///
 /// @param radius  r (m), at least 0

@@ -31,7 +31,7 @@ TriMesh box_strip() {
 
 /// Two half planes that meet at `angle`, the corner replaced by a cylinder of `strips` strips of
 /// the mesh's own width.
-TriMesh rounded_fold(int strips, double angle) {
+TriMesh fold_over_strips(int strips, double angle) {
   const double cell = 1.0 / 16, radius = strips * cell / angle;
   const sheets::Map bend = [=](const Eigen::Vector2d& p) -> Eigen::Vector3d {
     const double turned = std::clamp(p(0) / radius + angle / 2, 0.0, angle);
@@ -79,11 +79,11 @@ TEST(CreaseTurning, OfACylinderIsNoneHoweverFewItsSides) {
 }
 
 TEST(CreaseTurning, OfARoundedFoldIsNoneFromFiveStripsOn) {
-  const double sharp = crease_measures(rounded_fold(1, 90 * kDegree)).turning;
-  const double two = crease_measures(rounded_fold(2, 90 * kDegree)).turning;
+  const double sharp = crease_measures(fold_over_strips(1, 90 * kDegree)).turning;
+  const double two = crease_measures(fold_over_strips(2, 90 * kDegree)).turning;
   EXPECT_GT(sharp, 1);
   EXPECT_LT(two, sharp);
-  EXPECT_EQ(crease_measures(rounded_fold(6, 90 * kDegree)).turning, 0);
+  EXPECT_EQ(crease_measures(fold_over_strips(6, 90 * kDegree)).turning, 0);
 }
 
 // Vertices of the ridge lie beside it by turns, so that each second edge cuts its corner.

@@ -105,22 +105,26 @@ TEST(DevelopableRotation, LeavesACylinderAlone) {
 }
 
 /// Sum of |angle defect| that the iterations add to a surface given in a drawing's place.
-double added_defect(const TriMesh& mesh) {
+double added_defect(const TriMesh& mesh, double fairing = 0) {
   SketchInput input;
   input.surface = mesh;
   const PreparedSketch prepared = prepare_sketch(input);
   SeveralViewsOptions options;
+  options.fairing.share = fairing;
   const auto method = make_several_views(prepared, options);
   RunContext context;
   for (int i = 0; i < options.iterations; ++i) method->step(context);
   return total_defect(method->positions(), prepared) - total_defect(mesh.V, prepared);
 }
 
-// What is developable already has nothing to be turned for; what is not, is changed.
+// What is developable already has nothing to be turned for; what is not, is changed. Averages along
+// rulings lie on one side of a triangle at a border, and bend it a little.
 TEST(SeveralViews, DevelopableInputStays) {
   EXPECT_LT(added_defect(flow_shapes::cone()), 1e-3);
   EXPECT_LT(added_defect(flow_shapes::cylinder()), 1e-3);
   EXPECT_LT(added_defect(flow_shapes::tent()), 1e-3);
+  EXPECT_LT(added_defect(flow_shapes::cone(), 0.5), 0.1);
+  EXPECT_LT(added_defect(flow_shapes::cylinder(), 0.5), 0.1);
   EXPECT_GT(std::abs(added_defect(flow_shapes::noisy(flow_shapes::cylinder(), 0.002))), 0.1);
 }
 
@@ -131,6 +135,7 @@ TEST(DevelopableRotation, LiteralFitDivergesWhereTheGuardedOneConverges) {
   const auto after = [&](ConeFit fit) {
     SeveralViewsOptions options;
     options.developability = {.fit = fit, .relaxation = 1};
+    options.fairing.share = 0;
     const auto method = make_several_views(prepared, options);
     for (int i = 0; i < 10; ++i) method->step(context);
     return total_defect(method->positions(), prepared);
@@ -183,9 +188,11 @@ TEST(SeveralViews, SurfaceEndsAtTheSilhouettesAndBordersStayOnTheirStrokes) {
   drawing.views[1].strokes.push_back(drawing.views[0].strokes.back());
   const PreparedSketch prepared = prepare_sketch(input_of(drawing, 3000));
   EXPECT_FALSE(boundary_edges(prepared.surface.hull.mesh.F).empty());
-  const auto method = make_several_views(prepared, {});
+  SeveralViewsOptions options;
+  options.iterations = 4;
+  const auto method = make_several_views(prepared, options);
   RunContext context;
-  for (int i = 0; i < 3; ++i) method->step(context);
+  for (int i = 0; i < options.iterations; ++i) method->step(context);
   for (const Edge& e : boundary_edges(prepared.surface.hull.mesh.F))
     EXPECT_NEAR(method->positions()(e[0], 1), 0.3, 1e-12);
   // What lies between chosen edges is off by what chords of the bottom's circle are, h^2 / 8r.
