@@ -269,7 +269,7 @@ std::unique_ptr<Process> make_several_views_process(
     };
     suggester.apply = options.suggest->apply;
     suggester.iterations = options.suggest->iterations;
-    suggester.fair = fair_seams;
+    if (options.suggest->find.fair) suggester.fair = fair_seams;
     suggester.files = std::move(suggestion_files);
   }
   return make_sketch_process(

@@ -260,7 +260,8 @@ std::vector<SurfacePath> CandidateFinder::star(int from, int start, int count) c
 /// A cut that parts the piece in two is made fair first.
 void CandidateFinder::add(std::vector<SurfacePath> paths) {
   if (paths.empty()) return;
-  std::vector<SurfacePath> fair = faired_cut(mesh_, paths, kFairCut * edge_);
+  std::vector<SurfacePath> fair;
+  if (options_.fair) fair = faired_cut(mesh_, paths, kFairCut * edge_);
   found_.push_back(fair.empty() ? std::move(paths) : std::move(fair));
 }
 
@@ -278,7 +279,7 @@ void CandidateFinder::add_parts() {
         }
       }
       const Eigen::VectorXd mean = value.cwiseQuotient(count.cwiseMax(1.0));
-      add_level(smoothed_over(mesh_, mean, kFairCut * edge_));
+      add_level(options_.fair ? smoothed_over(mesh_, mean, kFairCut * edge_) : mean);
     }
   }
 }

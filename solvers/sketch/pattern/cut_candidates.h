@@ -26,6 +26,7 @@ std::optional<MirrorAxis> mirror_axis(const TriMesh& surface);
 struct CutCandidateOptions {
   double crease = 0.3;  ///< how much cheaper a cut is where curvature is concentrated; 0: not
   std::optional<MirrorAxis> mirror = {};
+  bool fair = true;  ///< false: cuts stay where they were found
 };
 
 /// Cuts that may make a piece developable, each a set of paths to be cut together.

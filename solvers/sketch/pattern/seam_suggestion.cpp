@@ -110,7 +110,7 @@ std::vector<CutTrial> GreedySuggester::measure(const std::vector<Panel>& pieces)
 /// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
 /// them, a dart may end on them.
 std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const Panel& panel) const {
-  const CutCandidateOptions options{options_.crease, trial_.mirror};
+  const CutCandidateOptions options{options_.crease, trial_.mirror, options_.fair};
   std::vector<std::vector<SurfacePath>> found;
   if (!panel.piece.borders.empty()) found = cut_candidates(panel.piece, options);
   // A closed piece is slit first: its scale is known at a border only.
@@ -213,12 +213,15 @@ bool GreedySuggester::apply(SuggestedSeam& suggestion) {
   SeamedSurface opened = cut;
   if (std::optional<Openings> openings = open_rings(opened, next_seam_ + 1, trial_)) {
     suggestion.openings = std::move(openings->cuts);
-    suggestion.opening_lines = faired_lines(openings->lines, line_width_);
+    suggestion.opening_lines = std::move(openings->lines);
   }
   const bool crumbs =
       least_piece(opened) < std::min(least_piece(work_), options_.min_part * whole_);
   if (crumbs && options_.rule == SuggestionRule::measured) return false;
-  suggestion.lines = faired_lines(suggestion.lines, line_width_);
+  if (options_.fair) {
+    suggestion.lines = faired_lines(suggestion.lines, line_width_);
+    suggestion.opening_lines = faired_lines(suggestion.opening_lines, line_width_);
+  }
   work_ = std::move(cut);
   ++next_seam_;
   return true;
@@ -299,6 +302,8 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
           {.doc = "least area of a piece, over that of the surface, that suggestions may leave",
            .min = 0,
            .max = 1});
+  v.value("fair", o.fair,
+          {.doc = "whether suggested seams are made fair; otherwise they stay as they were found"});
   v.value("symmetric", o.symmetric, {.doc = "whether mirrored surfaces get mirrored suggestions"});
   describe_choice(v, "rule", o.rule, kRules, {.doc = "where suggested cuts lie"});
   v.value("seed", o.seed, {.doc = "seed of cuts by chance", .min = 0});

@@ -23,6 +23,7 @@ struct SeamSuggestionOptions {
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
   double crease = 0.3;
   double min_part = 0.02;
+  bool fair = true;
   bool symmetric = true;
   SuggestionRule rule = SuggestionRule::measured;
   int seed = 0;
