@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/angles.h"
 #include "core/random.h"
@@ -131,32 +134,39 @@ TEST(HiddenBorders, KnowWhatIsDrawn) {
       if (place.stroke < 0) continue;
       const PictureCurve stroke{drawing.view.strokes[place.stroke].points,
                                 drawing.view.strokes[place.stroke].closed};
-      EXPECT_LT((point_at(stroke, place.at) - result.net.points[curve.nodes[i]]).norm(), 0.02);
+      EXPECT_LT((point_at(stroke, place.at) - result.net.points[curve.nodes[i]]).norm(), 0.03);
     }
   }
   EXPECT_GT(guessed, 50);
   EXPECT_GT(drawn, 200);
 }
 
+Stroke stroke_through(const std::string& id, StrokeKind kind,
+                      const std::vector<Eigen::Vector2d>& points, const std::string& name = "") {
+  Stroke stroke;
+  stroke.id = id;
+  stroke.kind = kind;
+  stroke.points = points;
+  stroke.name = name;
+  return stroke;
+}
+
 // An arch whose right third is covered by a border of another panel; two pairs lie on what is seen.
 TEST(HiddenBorders, ArchIsContinuedByItsMirrorImage) {
+  const auto arch_at = [](double s) { return Eigen::Vector2d(std::cos(s), 1.2 * std::sin(s)); };
+  std::vector<Eigen::Vector2d> arch;
+  for (int k = 0; k <= 40; ++k) arch.push_back(arch_at(std::numbers::pi * (1 - k / 60.0)));
+  const Eigen::Vector2d end = arch.back();
   View view;
   view.kind = ViewKind::photo;
-  Stroke arch{"arch", StrokeKind::border, false, {}, DepthSide::front, false, "sheet"};
-  for (int k = 0; k <= 40; ++k) {
-    const double s = std::numbers::pi * (1 - k / 60.0);
-    arch.points.emplace_back(std::cos(s), 1.2 * std::sin(s));
-  }
-  const Eigen::Vector2d end = arch.points.back();
-  Stroke wall{"wall",
-              StrokeKind::border,
-              false,
-              {end - Eigen::Vector2d(0, 1.5), end + Eigen::Vector2d(0, 0.5)}};
-  wall.name = "wall";
-  view.strokes = {arch, wall};
-  for (const double s : {70.0, 80.0}) {
-    const double x = std::cos(s * kDegree), y = 1.2 * std::sin(s * kDegree);
-    view.strokes.push_back({"pair", StrokeKind::symmetric_pair, false, {{-x, y}, {x, y}}});
+  view.strokes = {
+      stroke_through("arch", StrokeKind::border, arch, "sheet"),
+      stroke_through("wall", StrokeKind::border,
+                     {end - Eigen::Vector2d(0, 1.5), end + Eigen::Vector2d(0, 0.5)}, "wall")};
+  for (const double s : {62.0, 85.0}) {
+    view.strokes.push_back(
+        stroke_through("pair", StrokeKind::symmetric_pair,
+                       {arch_at(std::numbers::pi - s * kDegree), arch_at(s * kDegree)}));
   }
   const MirrorPlane plane{Eigen::Vector3d(0.8, 0, 0.6), 0};
   const CompletedView completed = complete_borders(view, plane, 0.008, Completion::mirror);
@@ -165,7 +175,7 @@ TEST(HiddenBorders, ArchIsContinuedByItsMirrorImage) {
   EXPECT_LT((completed.view.strokes[0].points.back() - Eigen::Vector2d(1, 0)).norm(), 0.02);
   EXPECT_THAT(complete_borders(view, plane, 0.008, Completion::none).guesses, IsEmpty());
   // With an occlusion the drawing says itself what is hidden.
-  view.strokes.push_back({"hidden", StrokeKind::occlusion, false, {{2, 0}, {3, 0}}});
+  view.strokes.push_back(stroke_through("hidden", StrokeKind::occlusion, {{2, 0}, {3, 0}}));
   EXPECT_THAT(complete_borders(view, plane, 0.008, Completion::all).guesses, IsEmpty());
 }
 
