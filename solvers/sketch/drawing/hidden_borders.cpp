@@ -52,7 +52,6 @@ struct PartialBorder {
   bool closed = false;
   std::vector<Stretch> stretches;
   std::array<bool, 2> covered{false, false};  ///< first and last end of an open one
-  bool tried = false;                         ///< its hidden ends were looked for in every way
 
   [[nodiscard]] bool whole() const {
     return stretches.size() == 1 && (closed || (!covered[0] && !covered[1]));
@@ -202,7 +201,7 @@ BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, d
   for (int s = 0; s < std::ssize(view.strokes); ++s) {
     const Stroke& stroke = view.strokes[s];
     if (stroke.kind != StrokeKind::border || stroke.points.size() < 2) continue;
-    PartialBorder border{s, panels_in(stroke.name), stroke.closed, {{}}, {}, false};
+    PartialBorder border{s, panels_in(stroke.name), stroke.closed, {{}}, {}};
     for (std::size_t k = 0; k < stroke.points.size(); ++k) {
       box.extend(stroke.points[k]);
       border.stretches.front().push_back({stroke.points[k], {s, static_cast<double>(k)}});
