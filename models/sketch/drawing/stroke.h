@@ -32,10 +32,10 @@ struct Stroke {
   std::string id;  ///< of the drawing's element, for errors; made up where it has none
   StrokeKind kind = StrokeKind::silhouette;
   bool closed = false;                        ///< the last point is joined to the first
-  std::vector<Eigen::Vector2d> points;        ///< in the view: right, up (m)
+  std::vector<Eigen::Vector2d> points = {};   ///< in the view: right, up (m)
   DepthSide side = DepthSide::front;          ///< of seams, folds and borders inside the silhouette
   bool inside = false;                        ///< of a border: a slit or hole, see `open_inside`
-  std::string name;                           ///< of a pair, a panel or a layer ("pair-3")
+  std::string name = {};                      ///< of a pair, a panel or a layer ("pair-3")
   std::optional<double> fold_angle_deg = {};  ///< between normal and view direction; the method's
   std::optional<double> fold_width = {};      ///< m; the method's when absent
   std::optional<FoldSide> fold_side = {};     ///< the one of the shorter turn when absent
