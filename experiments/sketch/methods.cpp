@@ -158,6 +158,12 @@ std::vector<DiagnosticEntry> diagnostics() {
        {"bend_back", "deg", "and that bend it back"},
        {"least_range", "deg", "of a joint, both ways together, the least"}});
   table.unmeasured(
+      "what was chosen, of which the surface shows the result",
+      {{"overlap_least", "1",
+        "overlap of a layer below the one before over that one's visible length, the least"},
+       {"overlap_most", "1", "and the largest of all joints"},
+       {"room_least", "deg", "angle either way for which the strip below has room, the least"}});
+  table.unmeasured(
       "how the drawing was read: of known shapes depth and axes are measured",
       {{"axis_residual", "deg",
         "between the mirror plane and the axis that a free ellipse has, the reading that was "

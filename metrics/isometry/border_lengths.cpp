@@ -51,9 +51,30 @@ void add_stretches(const std::vector<int>& chain, const Eigen::MatrixX2d& flat,
   }
 }
 
+/// Length of a smooth chain: every chord as the mean of the arcs that it cuts off the circles
+/// through its ends and the point before, and the point behind. Of fourth order in the chords.
+double smooth_length(const Eigen::MatrixX3d& points) {
+  const Eigen::Index n = points.rows();
+  double length = 0;
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const double chord = (points.row(i + 1) - points.row(i)).norm();
+    double sum = 0;
+    int count = 0;
+    for (Eigen::Index first = std::max<Eigen::Index>(i - 1, 0);
+         first <= std::min<Eigen::Index>(i, n - 3); ++first, ++count) {
+      const double radius = circular_arc(points.middleRows(first, 3)).radius;
+      sum += std::isinf(radius) ? chord : 2 * radius * std::asin(chord / (2 * radius));
+    }
+    length += sum / count;
+  }
+  return length;
+}
+
 double stretch_length(const Eigen::MatrixX3d& points) {
-  return points.rows() < 3 ? (points.row(0) - points.row(points.rows() - 1)).norm()
-                           : circular_arc(points).length;
+  if (points.rows() < 3) return (points.row(0) - points.row(points.rows() - 1)).norm();
+  const CircularArc arc = circular_arc(points);
+  constexpr double kRound = 1e-6;  // of its length
+  return arc.off <= kRound * arc.length ? arc.length : smooth_length(points);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "experiments/sketch/drawing/drawn_stroke.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <functional>
@@ -50,6 +51,15 @@ class TaggedShape {
     return value;
   }
 
+  /// Name of the innermost layer, a view's own aside, where the shape is alone in it; else empty.
+  [[nodiscard]] std::string own_layer() const {
+    if (shape_.layer.empty() || shape_.layer.starts_with("view:")) return {};
+    const auto same = [&](const SvgShape& other) { return other.layer == shape_.layer; };
+    return std::count_if(document_.shapes.begin(), document_.shapes.end(), same) == 1
+               ? shape_.layer
+               : std::string();
+  }
+
   /// Of data-kind or a class. `said` tells "none" from nothing.
   [[nodiscard]] std::optional<StrokeKind> kind(bool& said) const {
     std::optional<StrokeKind> kind;
@@ -96,7 +106,8 @@ std::string stroke_name(const TaggedShape& tagged, const SvgTags& tags, StrokeKi
   const bool named = kind == StrokeKind::symmetric_pair || kind == StrokeKind::plane_vector;
   const std::string panel = named ? std::string() : tagged.data("panel");
   if (!panel.empty()) return panel;
-  return tags.label.empty() && named ? tags.id : tags.label;
+  if (!tags.label.empty()) return tags.label;
+  return named ? tags.id : kind == StrokeKind::arc ? tagged.own_layer() : std::string();
 }
 
 DepthSide depth_side(const std::string& text, const std::string& place) {

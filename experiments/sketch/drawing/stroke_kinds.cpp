@@ -111,7 +111,9 @@ TopicFile drawing_keys() {
       {"data-kind", "text", "", stroke_kind_names() + ", none", "",
        "kind of a stroke, or of a group of them; none: a guide line that is left out"},
       {"data-name", "text", "", "", "",
-       "name of a pair, a plane vector or a layer; else label, or id"},
+       "name of a pair, a plane vector or a layer; else label, or id; of a layer else the name of "
+       "the "
+       "drawing program's layer that it is alone in"},
       {"data-panel", "text", "", "", "",
        "panel that a seam, fold, border or ruling belongs to; of a pair that of its border; "
        "several "

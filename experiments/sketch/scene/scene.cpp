@@ -9,6 +9,7 @@
 #include "experiments/sketch/drawing/picture_file.h"
 #include "experiments/sketch/drawing/view_picture.h"
 #include "experiments/sketch/fabrication/cloth_files.h"
+#include "experiments/sketch/pattern/joint_table.h"
 #include "testbed/formats/artifact.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
@@ -162,6 +163,9 @@ LayerFiles SketchScene::layer_files() const {
   LayerFiles files;
   if (!input.files) return files;
   files.pattern = input.files;
+  files.joints = [](const ArticulatedLayers& layers) -> std::vector<Artifact> {
+    return {artifact_of("layers.txt", joint_table(layers))};
+  };
   files.motion = [](const LayerMotion& motion) -> std::vector<Artifact> {
     std::vector<GltfLink> links;
     for (const LayerMotion::Link& link : motion.links)

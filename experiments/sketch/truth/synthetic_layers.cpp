@@ -26,7 +26,7 @@ class LayeredBody {
     out_.height = o_.length;
     out_.mirror_normal = to_view_.col(2);
     if (out_.mirror_normal.z() < 0) out_.mirror_normal *= -1;
-    out_.axis = to_view_ * axis_at(1);
+    out_.axis = to_view_ * axis_at(0);
     for (int k = 0; k < o_.arcs; ++k) draw_arc(k);
     draw_axis_vector("sym-a", {0, o_.length / 2, 0});
     draw_axis_vector("sym-b", {o_.length / 2, 0, 0});
@@ -38,9 +38,9 @@ class LayeredBody {
   [[nodiscard]] double turn(double k) const {
     return o_.bend_deg * kDegree * (k / (o_.arcs - 1) - 0.5);
   }
-  /// The first circle has the second's axis.
+  /// The first circle has the second's axis, turned by the tilt.
   [[nodiscard]] Eigen::Vector3d axis_at(int k) const {
-    const double a = turn(std::max(k, 1));
+    const double a = k == 0 ? turn(1) + o_.first_tilt_deg * kDegree : turn(k);
     return {std::cos(a), -std::sin(a), 0};
   }
   /// The line of centres by its chords, each in the direction of the circle it ends at.
@@ -51,7 +51,8 @@ class LayeredBody {
   }
   [[nodiscard]] double radius(int k) const {
     const double x = 2.0 * k / (o_.arcs - 1) - 1;
-    return o_.end_radius + (o_.radius - o_.end_radius) * (1 - x * x);
+    const double slope = (o_.rear_radius.value_or(o_.end_radius) - o_.end_radius) / 2;
+    return o_.end_radius + (o_.radius - o_.end_radius) * (1 - x * x) + slope * x * (1 + x);
   }
 
   void add(const std::string& id, StrokeKind kind, const std::vector<Eigen::Vector3d>& points,
@@ -108,8 +109,15 @@ void describe(OptionVisitor& v, SyntheticLayerOptions& o) {
   v.value("arcs", o.arcs, {.doc = "number of arcs, one more than layers", .min = 2, .max = 200});
   size("radius", o.radius, "radius of the widest circle");
   size("end_radius", o.end_radius, "radius of the first and the last circle");
+  v.value("rear_radius", o.rear_radius,
+          {.doc = "radius of the last circle; absent: that of the first",
+           .unit = "m",
+           .min = 1e-3,
+           .max = 1e3});
   size("length", o.length, "length of the line of centres");
   angle("bend_deg", o.bend_deg, "turn of the line of centres from first to last circle", -180, 180);
+  angle("first_tilt_deg", o.first_tilt_deg,
+        "angle from the second circle's axis to the first one's, the crown rearwards", -60, 60);
   angle("half_angle_deg", o.half_angle_deg, "half the angle of every arc", 10, 170);
   angle("hidden_deg", o.hidden_deg, "angle of every arc, at its far end, that is not drawn", 0,
         320);

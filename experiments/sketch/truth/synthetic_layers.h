@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/options.h"
 #include "experiments/sketch/truth/synthetic_views.h"
 
@@ -10,9 +12,11 @@ namespace geoprior::sketch {
 struct SyntheticLayerOptions {
   int arcs = 8;
   double radius = 1;
-  double end_radius = 0.6;  ///< of the first and the last; a parabola between (m)
+  double end_radius = 0.6;                 ///< of the first and the last; a parabola between (m)
+  std::optional<double> rear_radius = {};  ///< of the last, where it differs (m)
   double length = 2.4;
   double bend_deg = 60;
+  double first_tilt_deg = 0;
   double half_angle_deg = 105;
   double hidden_deg = 60;
   double yaw_deg = 40;
@@ -25,8 +29,8 @@ void describe(OptionVisitor& v, SyntheticLayerOptions& options);
 
 /// Orthographic drawing of the body: its arcs from head to tail, and the vectors of the mirror
 /// plane from the first centre, without noise. The first two circles have one axis, as the two
-/// edges of a frustum have. `height` is the length of the line of centres, `axis` that of the first
-/// circle.
+/// edges of a frustum have, but for `first_tilt_deg`. `height` is the length of the line of
+/// centres, `axis` that of the first circle.
 ///
 /// Each arc has random numbers of its own.
 /// @throws Error  when less than 20 degrees of the arcs are drawn

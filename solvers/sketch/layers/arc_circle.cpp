@@ -146,8 +146,8 @@ void require_order(const std::vector<ArcCircle>& circles) {
 }
 
 /// The first circle anew, on the axis of the second.
-void refit_first(const Stroke& arc, const Eigen::Vector3d& normal,
-                 std::vector<ArcCircle>& circles) {
+ArcCircle coaxial_first(const Stroke& arc, const Eigen::Vector3d& normal,
+                        const std::vector<ArcCircle>& circles) {
   const ArcCircle& second = circles[1];
   const PlaneBasis basis{second.centre, second.up, second.axis, normal};
   const double unit = second.radius;
@@ -162,7 +162,13 @@ void refit_first(const Stroke& arc, const Eigen::Vector3d& normal,
     for (double& s : first.at) s += std::acos(-1.0);
   }
   turn_circle(first, second.axis, second.up);
-  circles[0] = std::move(first);
+  return first;
+}
+
+/// Whether a circle lies about as near to its drawn points as one that had more freedom.
+bool fits_as_well(const ArcCircle& bound, const ArcCircle& free) {
+  constexpr double kWorse = 2, kLeast = 1e-3;  // times its distance; over the radius
+  return bound.rms <= std::max(kWorse * free.rms, kLeast * free.radius);
 }
 
 }  // namespace
@@ -206,8 +212,8 @@ ArcCircle fit_arc_circle(const Stroke& arc, const MirrorPlane& plane, bool const
   return circle;
 }
 
-std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane,
-                                       bool constrained) {
+std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane, bool constrained,
+                                       bool oblique) {
   std::vector<ArcCircle> circles;
   std::vector<const Stroke*> arcs;
   for (int i = 0; i < std::ssize(view.strokes); ++i) {
@@ -222,7 +228,8 @@ std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plan
   }
   require_order(circles);
   orient_circles(circles, plane.normal);
-  refit_first(*arcs[0], plane.normal, circles);
+  ArcCircle first = coaxial_first(*arcs[0], plane.normal, circles);
+  if (!oblique || fits_as_well(first, circles[0])) circles[0] = std::move(first);
   return circles;
 }
 

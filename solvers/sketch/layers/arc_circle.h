@@ -42,14 +42,18 @@ struct ArcCircle {
 /// plane as it was read there is one such circle; the other reading of the plane (Necker,
 /// `MirrorPlanes::other`) has the mirrored circles.
 ///
-/// The first arc is the front edge of the first layer, whose rear edge is the second one: it is
-/// fitted with the second's axis, two unknowns, so that the layer is a frustum.
+/// The first arc is the front edge of the first layer, whose rear edge is the second one. Where a
+/// circle with the second's axis, two unknowns, lies about as near to the drawn points as one that
+/// is free in the mirror plane (RMS at most twice as large, or a thousandth of the radius), it is
+/// taken: the layer is a frustum, and noise does not tilt its edge. Else the circle stays free, and
+/// the layer is cut obliquely in front (`FrustumBand`).
 ///
 /// @throws Error  naming the stroke: fewer than two arcs; what `fit_ellipse` refuses; a circle seen
 ///                edge on; an arc whose centre does not go on along the body (layers out of order)
 /// @param constrained  off: the start itself, its axis turned into the mirror plane (an ablation)
+/// @param oblique      off: the first circle has the axis of the second in any case
 std::vector<ArcCircle> fit_arc_circles(const View& view, const MirrorPlane& plane,
-                                       bool constrained = true);
+                                       bool constrained = true, bool oblique = true);
 
 /// A single arc, without the order of others: `axis` and `up` up to sign.
 /// @throws Error  as `fit_arc_circles`

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/angles.h"
 #include "core/error.h"
+#include "solvers/sketch/layers/joint_range.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -16,6 +18,9 @@ constexpr int kBisections = 60;
 constexpr int kRadiusBisections = 40;
 constexpr int kStripSamples = 24;  // of an angle, over half of the band
 constexpr int kStripRows = 16;
+constexpr double kMostOverlap = 0.95, kLeastOverlap = 0.05;
+constexpr int kOverlapSteps = 18;
+constexpr int kOverlapBisections = 5;
 
 /// What is kept free between a band and those it lies below.
 struct StripRoom {
@@ -25,14 +30,17 @@ struct StripRoom {
   double margin = 0;        ///< of the rivets (m)
 };
 
+/// A band that lies below the ones before it.
+struct OverlapFit {
+  FrustumBand band;
+  double share = 0;  ///< of the visible length of the band before
+  double free = 0;   ///< rad
+};
+
 /// Whether a point keeps its distance from the bands that it lies below.
 bool is_below(const Eigen::Vector3d& P, const std::vector<FrustumBand>& bands, double depth) {
-  return std::all_of(bands.begin(), bands.end(), [&](const FrustumBand& above) {
-    const Eigen::Vector3d p = above.own(P);
-    if (p.x() > 0 || p.x() < -above.length) return true;
-    const double slope = (above.rear_radius - above.front_radius) / above.length;
-    return std::hypot(p.y(), p.z()) <= above.radius_at(p.x()) - depth * std::hypot(1.0, slope);
-  });
+  return std::all_of(bands.begin(), bands.end(),
+                     [&](const FrustumBand& above) { return above.has_below(P, depth); });
 }
 
 /// How far the rear rim of the band before reaches forward of the rear rim of this one, along its
@@ -49,13 +57,7 @@ double visible_length(const FrustumBand& band, const FrustumBand& before) {
 /// Height above the lower border, less the margin, of the line through a point of the plane.
 double above_border(const FrustumBand& band, const Eigen::Vector3d& point, double margin) {
   const Eigen::Vector3d p = band.own(point);
-  const double r = band.radius_at(p.x());
-  return p.y() - r * std::cos(band.half_angle - margin / r);
-}
-
-/// s at which the line along the normal through a point of the plane meets the band.
-double line_meets(const FrustumBand& band, const Eigen::Vector3d& own) {
-  return std::acos(std::clamp(own.y() / band.radius_at(own.x()), -1.0, 1.0));
+  return p.y() - band.lower_border(p.x(), margin);
 }
 
 LayerHinge hinge_between(const FrustumBand& front, const FrustumBand& behind, double overlap,
@@ -74,11 +76,12 @@ LayerHinge hinge_between(const FrustumBand& front, const FrustumBand& behind, do
     (inside ? high : low) = y;
   }
   hinge.point = at_height(high);
-  const Eigen::Vector3d f = front.own(hinge.point), b = behind.own(hinge.point);
-  hinge.front_hole_at = f.x();
-  hinge.front_hole = line_meets(front, f);
-  hinge.rear_hole_at = b.x();
-  hinge.rear_hole = line_meets(behind, b);
+  const FrustumBand::Place f = front.side_place(front.own(hinge.point));
+  const FrustumBand::Place b = behind.side_place(behind.own(hinge.point));
+  hinge.front_hole_at = f.x;
+  hinge.front_hole = f.s;
+  hinge.rear_hole_at = b.x;
+  hinge.rear_hole = b.s;
   return hinge;
 }
 
@@ -103,21 +106,20 @@ bool strip_is_below(const FrustumBand& band, double overlap, const std::vector<F
   return true;
 }
 
-/// The largest front radius with which the band lies below those before it.
-void fit_front_radius(FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
-                      const StripRoom& room, const std::string& where, const std::string& other) {
+/// The largest front radius with which the band lies below those before it; false where half of
+/// the radius before it is too much.
+bool fit_front_radius(FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
+                      const StripRoom& room) {
   constexpr double kLeast = 0.5, kMost = 1.5;  // of the radius of the band before
   double low = kLeast * bands.back().rear_radius, high = kMost * bands.back().rear_radius;
   band.front_radius = low;
-  if (!strip_is_below(band, overlap, bands, room)) {
-    throw Error("its layer does not fit below that of '" + other + "'", where,
-                "an edge behind the one before it; less overlap or free_deg");
-  }
+  if (!strip_is_below(band, overlap, bands, room)) return false;
   for (int i = 0; i < kRadiusBisections; ++i) {
     band.front_radius = (low + high) / 2;
     (strip_is_below(band, overlap, bands, room) ? low : high) = band.front_radius;
   }
   band.front_radius = low;
+  return true;
 }
 
 FrustumBand band_to(const ArcCircle& circle) {
@@ -130,32 +132,137 @@ FrustumBand band_to(const ArcCircle& circle) {
   return band;
 }
 
+/// The first band, from the first circle to the second.
+FrustumBand first_band(const ArcCircle& front, const ArcCircle& circle) {
+  FrustumBand band = band_to(circle);
+  const Eigen::Vector3d centre = band.own(front.centre);
+  band.length = -centre.x();
+  band.front_radius = front.radius;
+  band.half_angle = std::max(band.half_angle, front.half_angle);
+  if (front.axis == circle.axis) return band;
+  band.front_rise = centre.y();
+  band.front_tilt = std::atan2(front.up.dot(band.axis), front.up.dot(band.up));
+  // Both edges are there as far as they were drawn: generators end at different angles on them.
+  double low = circle.half_angle, high = std::acos(-1.0);
+  if (band.front_angle(low) >= front.half_angle) high = low;
+  for (int i = 0; i < kBisections; ++i) {
+    const double s = (low + high) / 2;
+    (band.front_angle(s) < front.half_angle ? low : high) = s;
+  }
+  band.half_angle = high;
+  if (!band.rims_are_apart()) {
+    throw Error("the first two edges cross", "strokes '" + front.id + "' and '" + circle.id + "'",
+                "edges of a layer that nowhere meet, from rivet to rivet");
+  }
+  return band;
+}
+
+/// What is asked of a layer's place below the one before it.
+class OverlapChoice {
+ public:
+  OverlapChoice(const ArticulatedLayers& layers, const FrustumBand& rest,
+                const LayerOptions& options)
+      : layers_(layers), rest_(rest), options_(options) {
+    before_ = layers.bands.back().length - layers.overlaps.back();
+  }
+
+  /// The band that reaches a share of the visible length before it below the ones before it, with
+  /// room for joints to turn by `free` (rad); absent where it does not fit. Where the overlap is
+  /// chosen, both solids have to be apart over these angles as well.
+  [[nodiscard]] std::optional<FrustumBand> band(double share, double free) const {
+    const double overlap = share * before_;
+    FrustumBand band = rest_;
+    band.length = visible_length(band, layers_.bands.back()) + overlap;
+    const StripRoom room{(options_.thickness + options_.clearance) * layers_.unit,
+                         (options_.thickness + options_.clearance / 2) * layers_.unit, free,
+                         options_.rivet_margin * layers_.unit};
+    if (!fit_front_radius(band, overlap, layers_.bands, room)) return {};
+    return band;
+  }
+
+  /// The largest overlap that fits, with the angle that was asked for or a part of it.
+  [[nodiscard]] std::optional<OverlapFit> largest() const {
+    constexpr int kParts = 4;
+    double free = options_.free_deg * kDegree;
+    for (int part = 0; part < kParts; ++part, free = part + 1 < kParts ? free / 2 : 0) {
+      if (auto fit = largest(free)) return fit;
+      if (free == 0) break;
+    }
+    return {};
+  }
+
+  [[nodiscard]] double visible_before() const { return before_; }
+
+ private:
+  [[nodiscard]] std::optional<OverlapFit> at(double share, double free) const {
+    auto fitted = band(share, free);
+    if (!fitted) return {};
+    const double overlap = share * before_;
+    const LayerHinge hinge =
+        hinge_between(layers_.bands.back(), *fitted, overlap, options_.rivet_margin * layers_.unit);
+    const double thickness = options_.thickness * layers_.unit;
+    if (!layers_are_apart(layers_.bands.back(), *fitted, hinge, free, thickness, options_.grid))
+      return {};
+    return OverlapFit{*fitted, share, free};
+  }
+
+  [[nodiscard]] std::optional<OverlapFit> largest(double free) const {
+    // A rivet's hole and as much again on either side of it.
+    const double least = 4 * options_.rivet_radius * layers_.unit / before_;
+    for (int i = 0; i <= kOverlapSteps; ++i) {
+      const double share = kMostOverlap - i * (kMostOverlap - kLeastOverlap) / kOverlapSteps;
+      if (share < least) break;
+      auto fit = at(share, free);
+      if (!fit) continue;
+      double low = share, high = share + (kMostOverlap - kLeastOverlap) / kOverlapSteps;
+      for (int k = 0; i > 0 && k < kOverlapBisections; ++k) {
+        const double middle = (low + high) / 2;
+        const auto finer = at(middle, free);
+        if (finer) fit = finer;
+        (finer ? low : high) = middle;
+      }
+      return fit;
+    }
+    return {};
+  }
+
+  const ArticulatedLayers& layers_;
+  FrustumBand rest_;
+  const LayerOptions& options_;
+  double before_ = 0;  ///< visible length of the band before (m)
+};
+
 void add_band(ArticulatedLayers& layers, std::size_t k, const LayerOptions& options) {
   const ArcCircle& circle = layers.circles[k];
   const ArcCircle& before = layers.circles[k - 1];
-  FrustumBand band = band_to(circle);
-  const double visible = (circle.centre - before.centre).dot(circle.axis);
   const std::string where = "stroke '" + circle.id + "'";
-  if (!(visible > 0)) {
+  if (!((circle.centre - before.centre).dot(circle.axis) > 0)) {
     throw Error("its circle lies before that of '" + before.id + "' along its own axis", where,
                 "arcs in their order along the body");
   }
-  double overlap = 0;
   if (k == 1) {
-    band.length = visible;
-    band.front_radius = before.radius;
-    band.half_angle = std::max(band.half_angle, before.half_angle);
-  } else {
-    const FrustumBand& previous = layers.bands.back();
-    overlap = options.overlap * (previous.length - layers.overlaps.back());
-    band.length = visible_length(band, previous) + overlap;
-    const StripRoom room{(options.thickness + options.clearance) * layers.unit,
-                         (options.thickness + options.clearance / 2) * layers.unit,
-                         options.free_deg * kDegree, options.rivet_margin * layers.unit};
-    fit_front_radius(band, overlap, layers.bands, room, where, before.id);
+    layers.bands.push_back(first_band(before, circle));
+    layers.overlaps.push_back(0);
+    return;
   }
-  layers.bands.push_back(band);
-  layers.overlaps.push_back(overlap);
+  const OverlapChoice choice(layers, band_to(circle), options);
+  std::optional<OverlapFit> fit;
+  const double free = options.free_deg * kDegree;
+  if (!options.overlap) {
+    fit = choice.largest();
+  } else if (const auto band = choice.band(*options.overlap, free)) {
+    fit = {*band, *options.overlap, free};
+  }
+  if (!fit) {
+    throw Error("its layer does not fit below that of '" + before.id + "'" +
+                    (options.overlap ? " with this overlap" : ", however little they overlap"),
+                where,
+                options.overlap ? "less overlap, or none given, which chooses it; less free_deg"
+                                : "an edge farther behind the one before it; less clearance");
+  }
+  layers.bands.push_back(fit->band);
+  layers.overlaps.push_back(fit->share * choice.visible_before());
+  layers.choices.push_back({fit->share, fit->free, !options.overlap});
 }
 
 }  // namespace
@@ -170,8 +277,15 @@ void describe(OptionVisitor& v, LayerOptions& o) {
   v.value(
       "constrained", o.constrained,
       {.doc = "whether circles are fitted within the mirror plane, not read off their ellipses"});
-  share("overlap", o.overlap,
-        "overlap of a layer below the one before, over that one's visible length", 0.95);
+  v.value(
+      "overlap", o.overlap,
+      {.doc = "overlap of a layer below the one before, over that one's visible length; absent: "
+              "at every joint the largest that fits",
+       .min = 0,
+       .max = kMostOverlap});
+  v.value("oblique", o.oblique,
+          {.doc = "whether the first layer may be cut obliquely, so that its first edge is met "
+                  "where it is drawn; else it has the axis of the second"});
   share("thickness", o.thickness, "thickness of the sheet, over the mean radius of the circles",
         0.2);
   share("clearance", o.clearance,
@@ -202,7 +316,8 @@ void describe(OptionVisitor& v, LayerOptions& o) {
 ArticulatedLayers build_layers(const View& view, const LayerOptions& options) {
   ArticulatedLayers layers;
   layers.planes = drawn_mirror_planes(view, options.vector_ratio);
-  layers.circles = fit_arc_circles(view, layers.planes.chosen, options.constrained);
+  layers.circles =
+      fit_arc_circles(view, layers.planes.chosen, options.constrained, options.oblique);
   for (const ArcCircle& circle : layers.circles) layers.unit += circle.radius;
   layers.unit /= static_cast<double>(layers.circles.size());
   for (std::size_t k = 1; k < layers.circles.size(); ++k) add_band(layers, k, options);

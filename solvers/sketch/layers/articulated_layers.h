@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,10 @@ enum class HingeAxis {
 struct LayerOptions {
   double vector_ratio = 1;
   bool constrained = true;
-  /// How far a layer reaches below the one before it, over the visible length of that one.
-  double overlap = 0.5;
+  bool oblique = true;
+  /// How far a layer reaches below the one before it, over the visible length of that one; absent:
+  /// at every joint the largest that fits.
+  std::optional<double> overlap = {};
   double thickness = 0.008;
   double clearance = 0.012;  ///< between a layer and the part of the next that lies below it
   /// Angle of a joint either way for which the strip below has room: on a body that grows thinner
@@ -51,24 +54,37 @@ struct LayerHinge {
   double curl = 0, stretch = 0;            ///< largest angles both ways, >= 0 (rad)
 };
 
+/// How an overlap came about.
+struct OverlapRecord {
+  double share = 0;     ///< of the visible length of the layer before
+  double free = 0;      ///< angle either way for which the strip has room (rad)
+  bool chosen = false;  ///< not given by the user
+};
+
 /// Rigid layers, from the first arc to the last, and what joins them.
 struct ArticulatedLayers {
   MirrorPlanes planes;  ///< the one used, and the other reading of the same picture
   std::vector<ArcCircle> circles;
-  std::vector<FrustumBand> bands;  ///< one less; band j ends at circle j + 1
-  std::vector<double> overlaps;    ///< of each band below the one before; 0 for the first (m)
-  std::vector<LayerHinge> hinges;  ///< one less again; hinge j joins bands j and j + 1
-  double unit = 0;                 ///< mean radius (m)
+  std::vector<FrustumBand> bands;      ///< one less; band j ends at circle j + 1
+  std::vector<double> overlaps;        ///< of each band below the one before; 0 for the first (m)
+  std::vector<OverlapRecord> choices;  ///< one a hinge
+  std::vector<LayerHinge> hinges;      ///< one less again; hinge j joins bands j and j + 1
+  double unit = 0;                     ///< mean radius (m)
 };
 
 /// Circles, bands and hinges; without joint limits (joint_range.h).
 ///
-/// Band j is the frustum whose rear rim is circle j + 1, as it was drawn, about that circle's axis.
-/// It reaches forward to the farthest point of the circle before it and `overlap` farther; there
-/// its radius is the largest with which it stays below the bands before it: by `clearance` at rest,
-/// and by half of that where its strip is turned by up to `free_deg`. Its rivets lie halfway along
-/// the overlap, where a line along the mirror plane's normal meets both bands `rivet_margin` inside
-/// of their lower borders.
+/// Band j is the frustum whose rear rim is circle j + 1, as it was drawn, about that circle's axis;
+/// the first one goes from circle 0 to circle 1 whatever their axes.
+/// A band reaches forward to the farthest point of the circle before it and an overlap farther;
+/// there its radius is the largest with which it stays below the bands before it: by `clearance`
+/// at rest, and by half of that where its strip is turned by up to `free_deg`. Its rivets lie
+/// halfway along the overlap, where a line along the mirror plane's normal meets both bands
+/// `rivet_margin` inside of their lower borders.
+///
+/// An overlap that is not given is the largest, up to 95 % of the visible length of the band
+/// before, with which such a radius exists and both solids are apart at rest and over `free_deg`
+/// either way. Where there is none the angle is halved, twice, then 0.
 ///
 /// @throws Error  as `drawn_mirror_planes` and `fit_arc_circles`; a layer that does not fit below
 ///                the one before it (names both strokes)

@@ -133,6 +133,16 @@ class JointLimits {
 
 }  // namespace
 
+bool layers_are_apart(const FrustumBand& front, const FrustumBand& behind, const LayerHinge& hinge,
+                      double free, double thickness, const BandGrid& grid) {
+  const LayerSolid a(band_solid(front, thickness, grid)), b(band_solid(behind, thickness, grid));
+  for (const double turned : {0.0, -1.0, -0.5, 0.5, 1.0}) {
+    if (layers_touch(a, b, hinge_turn(hinge, turned * free))) return false;
+    if (free == 0) break;
+  }
+  return true;
+}
+
 void set_joint_limits(ArticulatedLayers& layers, const LayerOptions& options) {
   JointLimits(layers, options).set();
 }

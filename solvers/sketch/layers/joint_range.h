@@ -4,6 +4,11 @@
 
 namespace geoprior::sketch {
 
+/// Whether two layers as solids do not touch at rest and turned about their hinge by `free` (rad)
+/// and half of it, both ways.
+bool layers_are_apart(const FrustumBand& front, const FrustumBand& behind, const LayerHinge& hinge,
+                      double free, double thickness, const BandGrid& grid);
+
 /// Sets the largest angles by which each hinge can be turned, curling up and stretching out.
 ///
 /// An angle is free when the two layers as solids do not touch (an edge of one that meets a

@@ -215,14 +215,32 @@ class LayersModel final : public FrameModel {
     into["curl"] = curl / kDegree;
     into["bend_back"] = stretch / kDegree;
     into["least_range"] = least / kDegree;
+    diagnose_overlaps(into);
     into["arc_condition"] = condition;
     into["axis_residual"] = std::asin(kept) / kDegree;
     into["axis_residual_other"] = std::asin(other) / kDegree;
   }
 
+  void diagnose_overlaps(std::map<std::string, double>& into) const {
+    if (layers_.choices.empty()) return;
+    const auto by_share = [](const OverlapRecord& a, const OverlapRecord& b) {
+      return a.share < b.share;
+    };
+    const auto by_room = [](const OverlapRecord& a, const OverlapRecord& b) {
+      return a.free < b.free;
+    };
+    const auto& all = layers_.choices;
+    into["overlap_least"] = std::min_element(all.begin(), all.end(), by_share)->share;
+    into["overlap_most"] = std::max_element(all.begin(), all.end(), by_share)->share;
+    into["room_least"] = std::min_element(all.begin(), all.end(), by_room)->free / kDegree;
+  }
+
   void add_files(const Pattern& pattern, const Eigen::MatrixX3d& surface, FrameSink& sink) const {
     if (files_.pattern) {
       for (Artifact& file : files_.pattern(pattern, surface)) sink.artifact(std::move(file));
+    }
+    if (files_.joints) {
+      for (Artifact& file : files_.joints(layers_)) sink.artifact(std::move(file));
     }
     if (!files_.motion) return;
     LayerMotion motion;

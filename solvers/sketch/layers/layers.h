@@ -30,6 +30,8 @@ struct LayerFiles {
   /// Of the flat pieces and the points of the surface that they count.
   std::function<std::vector<Artifact>(const Pattern&, const Eigen::MatrixX3d&)> pattern;
   std::function<std::vector<Artifact>(const LayerMotion&)> motion;
+  /// Of what was chosen at every joint; with its limits.
+  std::function<std::vector<Artifact>(const ArticulatedLayers&)> joints;
 };
 
 /// Articulated rigid layers from one view (thesis figure 2.14): `build_layers`, `set_joint_limits`,
@@ -48,9 +50,11 @@ struct LayerFiles {
 /// - "pattern", in the last frame, as `add_pattern`.
 ///
 /// Diagnostics: "joint_share"; "curl" and "bend_back", sums of the limits (deg); "least_range", of
-/// a joint, both ways; "arc_condition", the worst; "axis_residual" and "axis_residual_other",
-/// angles between the mirror plane and the axis of the free ellipse, of the reading that was kept
-/// the largest, of the other the least.
+/// a joint, both ways; "overlap_least" and "overlap_most", of all joints, over the visible length
+/// of the layer before; "room_least", angle for which the strip below has room (deg);
+/// "arc_condition", the worst; "axis_residual" and "axis_residual_other", angles between the mirror
+/// plane and the axis of the free ellipse, of the reading that was kept the largest, of the other
+/// the least.
 std::unique_ptr<Process> make_layers_process(const View& view, const LayerOptions& options,
                                              const PatternOptions& pattern,
                                              const LayerFiles& files);

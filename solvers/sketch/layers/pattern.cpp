@@ -71,6 +71,11 @@ std::vector<Eigen::Vector2d> placement_line(const FrustumBand& band, const Frust
 
 }  // namespace
 
+std::string layer_name(const ArticulatedLayers& layers, std::size_t layer) {
+  const std::string& name = layers.circles[layer + 1].name;
+  return name.empty() ? "layer " + std::to_string(layer + 1) : name;
+}
+
 Pattern layer_pattern(const ArticulatedLayers& layers, const LayerOptions& options, double gap) {
   Pattern pattern;
   const double radius = options.rivet_radius * layers.unit;
@@ -78,8 +83,7 @@ Pattern layer_pattern(const ArticulatedLayers& layers, const LayerOptions& optio
     const FrustumBand& band = layers.bands[j];
     PatternPiece piece = flat_band(band, options.grid);
     number_surface(piece, j);
-    const std::string& name = layers.circles[j + 1].name;
-    piece.name = name.empty() ? "layer " + std::to_string(j + 1) : name;
+    piece.name = layer_name(layers, j);
     if (j > 0) {
       const LayerHinge& hinge = layers.hinges[j - 1];
       add_holes(band, hinge.rear_hole_at, hinge.rear_hole, radius, piece);

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <string>
+
 #include "models/sketch/pattern/pattern.h"
 #include "solvers/sketch/layers/articulated_layers.h"
 
 namespace geoprior::sketch {
+
+/// What a layer, from 0, is called: as the edge at its rear; "layer 1" where that has no name.
+std::string layer_name(const ArticulatedLayers& layers, std::size_t layer);
 
 /// The flat pieces of articulated layers, in closed form: no piece is flattened numerically.
 ///
