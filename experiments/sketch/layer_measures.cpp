@@ -18,6 +18,7 @@
 #include "metrics/shape/surface_distance.h"
 #include "metrics/spacing/rim_cover.h"
 #include "metrics/tracks/of_values.h"
+#include "models/sketch/drawing/ellipse_fit.h"
 #include "models/sketch/drawing/polyline.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
 
@@ -99,6 +100,16 @@ std::pair<double, double> image_distances(const Stroke& stroke, const Eigen::Mat
     most = std::max(most, squared);
   }
   return {sum, most};
+}
+
+double distance_to_line(const Eigen::MatrixX3d& line, const Eigen::Vector3d& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i + 1 < line.rows(); ++i) {
+    const Eigen::Vector3d a = line.row(i).transpose(), d = line.row(i + 1).transpose() - a;
+    const double share = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (a + share * d - p).norm());
+  }
+  return least;
 }
 
 void measure_contact(const Frame& frame, double width, LayerMeasures& measures) {
@@ -184,6 +195,35 @@ ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame) {
   measures.off_surface_percent =
       kPercentOf * largest_distance(lines.points, TriMesh{surface.points, surface.triangles}) /
       width;
+  return measures;
+}
+
+EdgeMeasures edge_measures(const SketchScene& scene, const Frame& frame) {
+  EdgeMeasures measures;
+  if (!has_arcs(scene) || frame.find_part("rims") == nullptr ||
+      frame.find_part("strokes") == nullptr)
+    return measures;
+  const View& view = scene.photo();
+  const Part& rims = frame.require_part("rims", Part::Kind::lines);
+  std::size_t edge = 0;
+  for (std::size_t number = 0; number < view.strokes.size(); ++number) {
+    const Stroke& stroke = view.strokes[number];
+    if (stroke.kind != StrokeKind::arc) continue;
+    const std::size_t line = edge == 0 ? 0 : 2 * edge - 1;
+    ++edge;
+    if (line >= rims.lines.size()) return {};
+    const Eigen::MatrixX3d rim = line_points(rims, line);
+    const double radius = fit_ellipse(stroke.points, stroke.id).ellipse.major;
+    const double off = std::sqrt(image_distances(stroke, rim).second) / radius;
+    measures.drawn = std::max(measures.drawn.value_or(0), off);
+    if (!scene.truth) continue;
+    const std::vector<Eigen::Vector3d>& known = scene.truth->truth[number];
+    Eigen::MatrixX3d real(known.size(), 3);
+    for (std::size_t i = 0; i < known.size(); ++i) real.row(i) = known[i].transpose();
+    double most = 0;
+    for (const Eigen::Vector3d& p : known) most = std::max(most, distance_to_line(rim, p));
+    measures.known = std::max(measures.known.value_or(0), most / circular_arc(real).radius);
+  }
   return measures;
 }
 

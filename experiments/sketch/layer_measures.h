@@ -15,6 +15,15 @@ struct ArcMeasures {
 };
 ArcMeasures arc_measures(const SketchScene& scene, const Frame& frame);
 
+/// How layers at rest meet the edges that were drawn, each over the edge's radius; the worst. Of
+/// the part "rims": the first arc is the front rim of the first layer, every other the rear rim of
+/// one.
+struct EdgeMeasures {
+  std::optional<double> drawn;  ///< in the view: radius of the ellipse through the stroke alone
+  std::optional<double> known;  ///< in space, of a known shape
+};
+EdgeMeasures edge_measures(const SketchScene& scene, const Frame& frame);
+
 /// Of articulated layers in any pose.
 struct LayerMeasures {
   std::optional<double> pairs;          ///< of triangles of different layers that intersect

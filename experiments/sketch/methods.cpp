@@ -175,7 +175,9 @@ std::vector<DiagnosticEntry> diagnostics() {
       "where a texture's points came from: its picture alone is recorded",
       {{"texture_seen", "1", "share of the pattern that the photograph shows"},
        {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
-       {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"}});
+       {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
+       {"texture_inside", "1",
+        "share of what is shown that lies beside a silhouette and has the colour farther inside"}});
   return table.rows();
 }
 

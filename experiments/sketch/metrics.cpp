@@ -6,6 +6,7 @@
 #include "experiments/sketch/garment_measures.h"
 #include "experiments/sketch/layer_measures.h"
 #include "experiments/sketch/measures.h"
+#include "experiments/sketch/texture_measures.h"
 #include "experiments/sketch/topic.h"
 #include "testbed/metric_rows.h"
 
@@ -187,6 +188,27 @@ MetricGroup layer_group() {
            kLow, {1e-3, 0.05}, &M::asymmetry_percent);
 }
 
+MetricGroup edge_group() {
+  using M = EdgeMeasures;
+  return frame_metrics<SketchScene>(edge_measures)
+      .row("edge_off", "1",
+           "at rest, largest distance in the view of a point of a drawn edge from that edge of the "
+           "layers, over the edge's radius; the worst edge",
+           kLow, {1e-5, 0.02}, &M::drawn)
+      .row("edge_off_known", "1",
+           "the same in space, of a known shape: of the edge's true points, without the hand's "
+           "noise",
+           kLow, {1e-5, 0.02}, &M::known);
+}
+
+MetricGroup texture_group() {
+  return frame_metrics<SketchScene>(background_texels)
+      .row("background_texels", "1",
+           "share of the texels within 2 of a piece's border that have the colour of the "
+           "photograph's background, where that is known",
+           kLow, kShare, [](const std::optional<double>& share) { return share; });
+}
+
 MetricGroup sector_group() {
   return frame_metrics<SketchScene>(sector_length_error)
       .row("sector_error", "1",
@@ -200,9 +222,9 @@ MetricGroup sector_group() {
 }  // namespace
 
 std::vector<MetricGroup> metrics() {
-  std::vector<MetricGroup> groups{surface_group(), silhouette_group(), pattern_group(),
-                                  truth_group(),   cut_group(),        arc_group(),
-                                  layer_group(),   sector_group()};
+  std::vector<MetricGroup> groups{
+      surface_group(), silhouette_group(), pattern_group(), truth_group(), cut_group(),
+      arc_group(),     layer_group(),      sector_group(),  edge_group(),  texture_group()};
   for (MetricGroup& group : garment_metrics()) groups.push_back(std::move(group));
   return groups;
 }

@@ -130,6 +130,7 @@ class OneView final : public FrameModel {
     OneViewFiles files = input_.files(input_.view, result, made.pattern);
     for (Artifact& file : files.artifacts) sink.artifact(std::move(file));
     frame.diagnostics.merge(files.diagnostics);
+    frame.parts.merge(files.parts);
   }
 
   const OneViewInput& input_;  ///< of the process, which outlives its model

@@ -17,6 +17,7 @@ namespace geoprior::sketch {
 struct OneViewFiles {
   std::vector<Artifact> artifacts;
   std::map<std::string, double> diagnostics;
+  std::map<std::string, Part> parts = {};  ///< that the frame has beside its own
 };
 
 /// What a reconstruction from one view is given.

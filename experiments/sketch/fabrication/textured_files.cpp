@@ -1,5 +1,7 @@
 #include "experiments/sketch/fabrication/textured_files.h"
 
+#include <utility>
+
 #include "experiments/sketch/drawing/picture_file.h"
 #include "experiments/sketch/fabrication/escaped_text.h"
 #include "experiments/sketch/fabrication/written_number.h"
@@ -79,7 +81,54 @@ std::string textured_svg(const Pattern& pattern, const PixelGrid& grid) {
 
 }  // namespace
 
-void describe(OptionVisitor& v, TexturedFileOptions& options) { describe(v, options.bake); }
+void describe(OptionVisitor& v, TexturedFileOptions& options) {
+  describe(v, options.bake);
+  v.value(
+      "background", options.background,
+      {.doc = "colour of the photograph's background, #rrggbb, of a picture of which it is known: "
+              "then texels beside borders are recorded and measured against it"});
+}
+
+Part border_texels(const PixelImage& image, const PixelGrid& grid, const Pattern& pattern) {
+  constexpr int kBeside = 2;
+  std::vector<std::size_t> found;
+  for (const PatternPiece& piece : pattern.pieces) {
+    TriMesh flat{Eigen::MatrixX3d::Zero(piece.points.rows(), 3), piece.triangles};
+    flat.V.leftCols<2>() = piece.points;
+    const NearestTriangles covered = nearest_triangles(flat, grid);
+    const auto within = [&](int x, int y) {
+      return x >= 0 && y >= 0 && x < grid.width && y < grid.height &&
+             covered.covered(static_cast<std::size_t>(y) * grid.width + x);
+    };
+    const auto beside = [&](int x, int y) {
+      for (int j = -kBeside; j <= kBeside; ++j) {
+        for (int i = -kBeside; i <= kBeside; ++i) {
+          if (i * i + j * j <= kBeside * kBeside && !within(x + i, y + j)) return true;
+        }
+      }
+      return false;
+    };
+    for (int y = 0; y < grid.height; ++y) {
+      for (int x = 0; x < grid.width; ++x) {
+        if (within(x, y) && beside(x, y))
+          found.push_back(static_cast<std::size_t>(y) * grid.width + x);
+      }
+    }
+  }
+  Part part;
+  part.kind = Part::Kind::points;
+  part.points = Eigen::MatrixX3d::Zero(found.size(), 3);
+  NamedArray colour{"colour", "1", NamedArray::On::points, Eigen::MatrixXd(found.size(), 3)};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const int x = static_cast<int>(found[i] % grid.width),
+              y = static_cast<int>(found[i] / grid.width);
+    part.points.row(i).head<2>() = grid.place(x, y).transpose();
+    const PixelColour& c = image.at(x, y);
+    colour.values.row(i) << c[0], c[1], c[2];
+  }
+  part.arrays.push_back(std::move(colour));
+  return part;
+}
 
 TexturedFiles textured_files(const View& view, const PixelImage& photo, const OneViewResult& result,
                              const Pattern& pattern, const TexturedFileOptions& options) {
@@ -89,9 +138,11 @@ TexturedFiles textured_files(const View& view, const PixelImage& photo, const On
                 {"textured-pattern.svg", textured_svg(pattern, baked.grid)},
                 {"model.obj", obj_text(result, pattern, baked.grid)},
                 {"model.mtl", mtl_text()}};
+  if (options.background) made.texels = border_texels(baked.image, baked.grid, pattern);
   made.diagnostics = {{"texture_seen", baked.seen},
                       {"texture_mirrored", baked.mirrored},
-                      {"texture_flat", baked.flat}};
+                      {"texture_flat", baked.flat},
+                      {"texture_inside", baked.inside}};
   return made;
 }
 

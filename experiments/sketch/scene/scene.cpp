@@ -13,6 +13,7 @@
 #include "testbed/formats/artifact.h"
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
+#include "testbed/formats/svg/color.h"
 #include "testbed/home.h"
 
 namespace geoprior::sketch {
@@ -93,6 +94,15 @@ void require_picture(const SketchScene& scene) {
   }
 }
 
+/// @throws Error  unless it is absent or a colour
+std::optional<std::string> known_background(const TexturedFileOptions& textures) {
+  if (textures.background && !parse_svg_colour(*textures.background)) {
+    throw Error("'" + *textures.background + "' is no colour", "scene.textures.background",
+                "#rrggbb");
+  }
+  return textures.background;
+}
+
 /// Files of one view: the pattern's, the textured ones, and the drawing that was made here.
 OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture, const View& view,
                             const OneViewResult& result, const Pattern& pattern) {
@@ -104,6 +114,7 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
     TexturedFiles textured = textured_files(view, picture.of(view), result, pattern, *o.textures);
     made = std::move(textured.files);
     files.diagnostics = std::move(textured.diagnostics);
+    if (o.textures->background) files.parts["texels"] = std::move(textured.texels);
   }
   if (o.known && o.drawing.empty()) {
     for (FabricationFile& file : known_drawing_files(o.known->shape))
@@ -235,6 +246,7 @@ std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options
       require_picture(*scene);
   }
   if (options.known) load_known(options, seed, *scene);
+  if (options.textures) scene->background = known_background(*options.textures);
   return scene;
 }
 

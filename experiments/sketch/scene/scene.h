@@ -56,8 +56,9 @@ class SketchScene final : public ProcessScene {
  public:
   SketchInput input;  ///< what a method is given
   std::vector<DrawnSilhouette> silhouettes;
-  Drawing aligned;                     ///< of several views, as methods see them
-  std::optional<SyntheticView> truth;  ///< of a synthetic or known view
+  Drawing aligned;                        ///< of several views, as methods see them
+  std::optional<SyntheticView> truth;     ///< of a synthetic or known view
+  std::optional<std::string> background;  ///< colour behind the object in the photograph
   /// Files that are made of one view; none when empty.
   std::function<OneViewFiles(const View&, const OneViewResult&, const Pattern&)> photo_files;
 

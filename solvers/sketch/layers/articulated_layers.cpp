@@ -28,6 +28,7 @@ struct StripRoom {
   double turned_depth = 0;  ///< and where the band is turned (m)
   double free = 0;          ///< angle either way (rad)
   double margin = 0;        ///< of the rivets (m)
+  bool whole = false;       ///< turned, the whole band has to have room, not its strip alone
 };
 
 /// A band that lies below the ones before it.
@@ -85,14 +86,15 @@ LayerHinge hinge_between(const FrustumBand& front, const FrustumBand& behind, do
   return hinge;
 }
 
-/// Whether a band lies below those before it, at rest as a whole, and with its strip when it is
-/// turned about its hinge by `free` either way.
+/// Whether a band lies below those before it, at rest as a whole, and with its strip (or as a
+/// whole: what is behind their rims may get below them) when it is turned about its hinge by `free`
+/// either way.
 bool strip_is_below(const FrustumBand& band, double overlap, const std::vector<FrustumBand>& bands,
                     const StripRoom& room) {
   const LayerHinge hinge = hinge_between(bands.back(), band, overlap, room.margin);
   for (const double turned : {0.0, -1.0, -0.5, 0.5, 1.0}) {
     const Eigen::Isometry3d turn = hinge_turn(hinge, turned * room.free);
-    const double reach = turned == 0 ? band.length : overlap;
+    const double reach = turned == 0 || room.whole ? band.length : overlap;
     const double depth = turned == 0 ? room.depth : room.turned_depth;
     for (int i = 0; i <= kStripRows; ++i) {
       const double x = -band.length + reach * i / kStripRows;
@@ -175,7 +177,7 @@ class OverlapChoice {
     band.length = visible_length(band, layers_.bands.back()) + overlap;
     const StripRoom room{(options_.thickness + options_.clearance) * layers_.unit,
                          (options_.thickness + options_.clearance / 2) * layers_.unit, free,
-                         options_.rivet_margin * layers_.unit};
+                         options_.rivet_margin * layers_.unit, !options_.overlap};
     if (!fit_front_radius(band, overlap, layers_.bands, room)) return {};
     return band;
   }
@@ -183,8 +185,8 @@ class OverlapChoice {
   /// The largest overlap that fits, with the angle that was asked for or a part of it.
   [[nodiscard]] std::optional<OverlapFit> largest() const {
     constexpr int kParts = 4;
-    double free = options_.free_deg * kDegree;
-    for (int part = 0; part < kParts; ++part, free = part + 1 < kParts ? free / 2 : 0) {
+    for (int part = kParts; part >= 0; --part) {
+      const double free = options_.free_deg * kDegree * part / kParts;
       if (auto fit = largest(free)) return fit;
       if (free == 0) break;
     }

@@ -83,8 +83,9 @@ struct ArticulatedLayers {
 /// `rivet_margin` inside of their lower borders.
 ///
 /// An overlap that is not given is the largest, up to 95 % of the visible length of the band
-/// before, with which such a radius exists and both solids are apart at rest and over `free_deg`
-/// either way. Where there is none the angle is halved, twice, then 0.
+/// before, with which such a radius exists, the whole band has that room when it is turned, and
+/// both solids are apart at rest and over `free_deg` either way. Where there is none the angle is
+/// made smaller, in quarters down to 0.
 ///
 /// @throws Error  as `drawn_mirror_planes` and `fit_arc_circles`; a layer that does not fit below
 ///                the one before it (names both strokes)

@@ -47,9 +47,11 @@ class SeenSurface {
 
   /// Colour of a point that is seen, at its place in the picture; nothing when it is not.
   /// @param normal  of the surface there, to the outside
-  [[nodiscard]] std::optional<Eigen::Vector3d> colour(const Eigen::Vector3d& point,
-                                                      const Eigen::Vector3d& normal,
-                                                      const Eigen::Vector2d& texture) const;
+  /// @param patch   that it belongs to
+  std::optional<Eigen::Vector3d> colour(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                        const Eigen::Vector2d& texture, int patch);
+  /// Whether the last colour was taken from farther inside.
+  [[nodiscard]] bool moved_inside() const { return moved_inside_; }
   /// Texture coordinates of a point's own image.
   [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& point) const {
     return (point.head<2>() - origin_).cwiseQuotient(size_);
@@ -58,14 +60,25 @@ class SeenSurface {
 
  private:
   void decide_outsides(const OneViewResult& result);
+  void mark_silhouettes();
+  [[nodiscard]] bool at_silhouette(int x, int y) const;
+  [[nodiscard]] bool inner(int x, int y, int patch) const;
+  [[nodiscard]] std::optional<Eigen::Vector2d> nearest_inner(const Eigen::Vector2d& at,
+                                                             int patch) const;
+  [[nodiscard]] std::size_t pixel(int x, int y) const {
+    return static_cast<std::size_t>(y) * grid_.width + x;
+  }
 
   const PixelImage& photo_;
   BakeOptions options_;
   Eigen::Vector2d origin_, size_;
   PixelGrid grid_;
   NearestTriangles nearest_;
-  Eigen::MatrixX3d normals_;  ///< of the triangles, to the outside
+  Eigen::MatrixX3d normals_;       ///< of the triangles, to the outside
+  const std::vector<int>& patch_;  ///< of the triangles
   double behind_;
+  std::vector<char> outer_;  ///< pixels so near to a silhouette that the photograph may be off
+  bool moved_inside_ = false;
 };
 
 SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneViewResult& result,
@@ -74,7 +87,8 @@ SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneVie
       options_(options),
       origin_(view.picture.origin),
       size_(view.picture.size),
-      normals_(triangle_normals(result.surface.mesh)) {
+      normals_(triangle_normals(result.surface.mesh)),
+      patch_(result.surface.patch) {
   const TriMesh& mesh = result.surface.mesh;
   // A square grid over the picture, about as fine as its pixels.
   grid_.origin = origin_;
@@ -84,6 +98,64 @@ SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneVie
   nearest_ = nearest_triangles(mesh, grid_);
   behind_ = options.behind * bounding_box_diagonal(mesh.V);
   decide_outsides(result);
+  mark_silhouettes();
+}
+
+/// Whether the surface ends beside a pixel, or lies much deeper or higher there.
+bool SeenSurface::at_silhouette(int x, int y) const {
+  const std::size_t own = pixel(x, y);
+  if (!nearest_.covered(own)) return false;
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, grid_.height - 1); ++j) {
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, grid_.width - 1); ++i) {
+      const std::size_t other = pixel(i, j);
+      if (!nearest_.covered(other) ||
+          std::abs(nearest_.depth[other] - nearest_.depth[own]) > behind_)
+        return true;
+    }
+  }
+  return false;
+}
+
+void SeenSurface::mark_silhouettes() {
+  outer_.assign(nearest_.triangle.size(), 0);
+  if (options_.disagreement == 0) return;
+  constexpr double kMixed = 1;
+  const double reach = options_.disagreement + kMixed;
+  const int most = static_cast<int>(reach);
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) {
+      if (!at_silhouette(x, y)) continue;
+      for (int j = std::max(y - most, 0); j <= std::min(y + most, grid_.height - 1); ++j) {
+        for (int i = std::max(x - most, 0); i <= std::min(x + most, grid_.width - 1); ++i) {
+          if (std::hypot(i - x, j - y) <= reach) outer_[pixel(i, j)] = 1;
+        }
+      }
+    }
+  }
+}
+
+/// Whether a pixel shows a patch, away from silhouettes.
+bool SeenSurface::inner(int x, int y, int patch) const {
+  if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return false;
+  const std::size_t i = pixel(x, y);
+  return nearest_.covered(i) && outer_[i] == 0 && patch_[nearest_.triangle[i]] == patch;
+}
+
+/// The nearest such pixel, a few times farther in than photograph and drawing may disagree at most.
+std::optional<Eigen::Vector2d> SeenSurface::nearest_inner(const Eigen::Vector2d& at,
+                                                          int patch) const {
+  constexpr double kReach = 4;
+  const int reach = static_cast<int>(std::ceil(kReach * (options_.disagreement + 1)));
+  const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+  std::optional<Eigen::Vector2d> best;
+  for (int j = y - reach; j <= y + reach; ++j) {
+    for (int i = x - reach; i <= x + reach; ++i) {
+      const Eigen::Vector2d there(i, j);
+      if (best && (there - at).squaredNorm() >= (*best - at).squaredNorm()) continue;
+      if (inner(i, j, patch)) best = there;
+    }
+  }
+  return best;
 }
 
 /// A connected surface has one outside.
@@ -104,15 +176,35 @@ void SeenSurface::decide_outsides(const OneViewResult& result) {
 
 std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
                                                    const Eigen::Vector3d& normal,
-                                                   const Eigen::Vector2d& texture) const {
+                                                   const Eigen::Vector2d& texture, int patch) {
+  moved_inside_ = false;
   if (normal.z() < options_.least_facing) return {};
   const Eigen::Vector2d at = grid_.pixels_at(point.head<2>());
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
   if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return {};
   const std::size_t i = static_cast<std::size_t>(y) * grid_.width + x;
   if (nearest_.depth[i] > point.z() + behind_) return {};
+  const Eigen::Vector2d in_photo(texture.x() * photo_.width - 0.5,
+                                 (1 - texture.y()) * photo_.height - 0.5);
+  if (options_.disagreement == 0) return photo_colour(photo_, in_photo);
+  // Four pixels are mixed.
+  const int left = static_cast<int>(std::floor(at.x())), top = static_cast<int>(std::floor(at.y()));
+  const auto unsafe = [&](int column, int row) {
+    const int c = std::clamp(column, 0, grid_.width - 1), r = std::clamp(row, 0, grid_.height - 1);
+    return !nearest_.covered(pixel(c, r)) || outer_[pixel(c, r)] != 0;
+  };
+  if (!unsafe(left, top) && !unsafe(left + 1, top) && !unsafe(left, top + 1) &&
+      !unsafe(left + 1, top + 1)) {
+    return photo_colour(photo_, in_photo);
+  }
+  const auto inside = nearest_inner(at, patch);
+  if (!inside) return {};
+  moved_inside_ = true;
+  const Eigen::Vector2d place =
+      grid_.place(static_cast<int>(inside->x()), static_cast<int>(inside->y()));
+  const Eigen::Vector2d there = (place - origin_).cwiseQuotient(size_);
   return photo_colour(photo_,
-                      {texture.x() * photo_.width - 0.5, (1 - texture.y()) * photo_.height - 0.5});
+                      {there.x() * photo_.width - 0.5, (1 - there.y()) * photo_.height - 0.5});
 }
 
 /// The pieces of a pattern as one mesh in z = 0, with the places of its points in space.
@@ -171,7 +263,7 @@ enum class TexelSource : std::uint8_t { none, seen, mirrored, flat };
 
 class PatternBaker {
  public:
-  PatternBaker(const SeenSurface& seen, const OneViewResult& result, const PatternInSpace& pieces,
+  PatternBaker(SeenSurface& seen, const OneViewResult& result, const PatternInSpace& pieces,
                const PixelGrid& grid)
       : seen_(seen),
         result_(result),
@@ -192,13 +284,14 @@ class PatternBaker {
   void fill_hidden();
   void bleed_once();
 
-  const SeenSurface& seen_;
+  SeenSurface& seen_;
   const OneViewResult& result_;
   const PatternInSpace& pieces_;
   PixelGrid grid_;
   NearestTriangles covered_;
   std::vector<Eigen::Vector3d> colour_;
   std::vector<TexelSource> source_;
+  double moved_inside_ = 0;
 };
 
 void PatternBaker::colour_texel(std::size_t texel) {
@@ -222,13 +315,15 @@ void PatternBaker::colour_texel(std::size_t texel) {
     normal = reflected(normal);
   }
   source_[texel] = TexelSource::seen;
-  std::optional<Eigen::Vector3d> colour = seen_.colour(point, normal, texture);
+  const int patch = surface.patch[t];
+  std::optional<Eigen::Vector3d> colour = seen_.colour(point, normal, texture, patch);
   if (!colour) {
     const Eigen::Vector3d image = mirrored(plane, point);
     source_[texel] = TexelSource::mirrored;
-    colour = seen_.colour(image, reflected(normal), seen_.projected(image));
+    colour = seen_.colour(image, reflected(normal), seen_.projected(image), patch);
   }
   if (!colour) source_[texel] = TexelSource::flat;
+  if (colour && seen_.moved_inside()) ++moved_inside_;
   if (colour) colour_[texel] = *colour;
 }
 
@@ -293,6 +388,7 @@ BakedPattern PatternBaker::bake(int bleed) {
     baked.mirrored += source == TexelSource::mirrored ? 1 : 0;
     baked.flat += source == TexelSource::flat ? 1 : 0;
   }
+  baked.inside = moved_inside_ / std::max(baked.seen + baked.mirrored, 1.0);
   for (double* share : {&baked.seen, &baked.mirrored, &baked.flat}) *share /= std::max(all, 1.0);
   fill_hidden();
   for (int k = 0; k < bleed; ++k) bleed_once();
@@ -319,11 +415,17 @@ void describe(OptionVisitor& v, BakeOptions& o) {
           {.doc = "depth by which what hides must be nearer, over the surface's diagonal",
            .min = 0,
            .max = 1});
+  v.value(
+      "disagreement", o.disagreement,
+      {.doc = "pixels of the photograph by which it and the drawing may disagree at silhouettes; "
+              "colours beside them are taken from farther inside",
+       .min = 0,
+       .max = 50});
 }
 
 BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,
                           const Pattern& pattern, const BakeOptions& options) {
-  const SeenSurface seen(view, photo, result, options);
+  SeenSurface seen(view, photo, result, options);
   const PatternInSpace pieces = merged_pieces(pattern);
   const PixelGrid grid = pattern_grid(pieces.flat, view.picture.size.x() / photo.width, options);
   return PatternBaker(seen, result, pieces, grid).bake(options.bleed);

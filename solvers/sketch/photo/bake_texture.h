@@ -17,6 +17,8 @@ struct BakeOptions {
   int bleed = 4;
   double least_facing = 0.2;
   double behind = 0.01;
+  /// By how many of its pixels photograph and drawing may disagree.
+  double disagreement = 2;
 };
 void describe(OptionVisitor& v, BakeOptions& options);
 
@@ -27,6 +29,8 @@ struct BakedPattern {
   double seen = 0;      ///< share of the pieces' area that the photograph shows
   double mirrored = 0;  ///< … that is hidden, but whose mirror image is seen
   double flat = 0;      ///< … that nothing shows
+  /// Share of what is seen that lies so near to a silhouette that it has the colour beside it.
+  double inside = 0;
 };
 
 /// Colours of the flat pieces from the photograph (thesis 2.1.3: the hidden half has the texture of
@@ -38,6 +42,12 @@ struct BakedPattern {
 /// that is seen; else the mean of what is seen of its patch, or of all patches. Which side of a
 /// connected surface is its outside is decided by what most of its visible area turns to the eye.
 /// The result is symmetric: a sign on one half is on both, mirrored.
+///
+/// What lies nearer to a silhouette in the picture than photograph and drawing may disagree, one
+/// pixel more for the mixed pixels along an edge, has the colour of the nearest pixel of its patch
+/// that lies farther in: else a traced line that is two pixels off paints the background, or what
+/// lies behind, along the borders of panels. Silhouettes are where the surface ends in the picture
+/// or its depth jumps.
 ///
 /// Colours are those of the photograph, with its light and shade in them.
 ///
