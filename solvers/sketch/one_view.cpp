@@ -218,6 +218,11 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
            .min = 1e-6,
            .max = 1});
   v.value("mirror", o.mirror, {.doc = "whether the more visible half is kept and mirrored"});
+  v.value("disagreement", o.disagreement,
+          {.doc = "pixels of the photograph by which it and the drawing may disagree: colours of a "
+                  "texture that lie so near to a panel's border are taken from farther inside",
+           .min = 0,
+           .max = 50});
   describe_group(v, "refine", o.refine,
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
@@ -226,6 +231,7 @@ OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& optio
   if (view.kind != ViewKind::photo)
     throw Error("reconstruction from one view needs a photo view", view_name(view.kind), "photo");
   OneViewResult result;
+  result.disagreement = options.disagreement;
   const int half_width = options.depth.tangent_half_width;
   result.planes = drawn_mirror_planes(view, options.vector_ratio);
   if (options.refine && options.refine->vector_ratio == 0)

@@ -28,6 +28,8 @@ struct OneViewOptions {
   double vector_ratio = 1;
   double pair_tolerance = 0.03;
   bool mirror = true;
+  /// Pixels by which photograph and drawing may disagree, where textures are read (`bake_pattern`).
+  double disagreement = 2;
   std::optional<RefineOptions> refine = {};  ///< non-linear, from the quadratic energy's minimum
 };
 void describe(OptionVisitor& v, OneViewOptions& options);
@@ -49,6 +51,7 @@ struct OneViewResult {
   DepthSolution depth;  ///< nodes of the net in space; residuals; condition
   std::vector<OneViewPatch> patches;
   TexturedSurface surface;              ///< welded; symmetric when asked for
+  double disagreement = 2;              ///< of photograph and drawing (pixels)
   bool kept_positive = true;            ///< the half towards the eye was kept
   int matches = 0;                      ///< dense symmetric correspondences
   std::optional<RefinedDepth> refined;  ///< when asked for; `depth` and `planes.chosen` are its

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -18,8 +19,8 @@ constexpr int kBisections = 60;
 constexpr int kRadiusBisections = 40;
 constexpr int kStripSamples = 24;  // of an angle, over half of the band
 constexpr int kStripRows = 16;
-constexpr double kMostOverlap = 0.95, kLeastOverlap = 0.05;
-constexpr int kOverlapSteps = 18;
+constexpr double kMostOverlap = 0.95, kLeastOverlap = 0.05, kOverlapStep = 0.05;
+constexpr double kMostGaping = 0.5;  // overlap of layers that cannot but gape
 constexpr int kOverlapBisections = 5;
 
 /// What is kept free between a band and those it lies below.
@@ -187,7 +188,12 @@ class OverlapChoice {
     constexpr int kParts = 4;
     for (int part = kParts; part >= 0; --part) {
       const double free = options_.free_deg * kDegree * part / kParts;
-      if (auto fit = largest(free)) return fit;
+      constexpr double kAny = std::numeric_limits<double>::infinity();
+      for (const Wanted& wanted :
+           {Wanted{kMostOverlap, options_.gape * layers_.unit, free},
+            Wanted{kMostGaping, kAny, free}, Wanted{kMostOverlap, kAny, free}}) {
+        if (auto fit = largest(wanted)) return fit;
+      }
       if (free == 0) break;
     }
     return {};
@@ -196,30 +202,62 @@ class OverlapChoice {
   [[nodiscard]] double visible_before() const { return before_; }
 
  private:
-  [[nodiscard]] std::optional<OverlapFit> at(double share, double free) const {
-    auto fitted = band(share, free);
+  struct Wanted {
+    double most = 0;  ///< overlap
+    double gape = 0;  ///< between the rim before and the band (m)
+    double free = 0;  ///< rad
+  };
+
+  [[nodiscard]] std::optional<OverlapFit> at(double share, const Wanted& wanted) const {
+    const auto fitted = band(share, wanted.free);
     if (!fitted) return {};
+    const FrustumBand& front = layers_.bands.back();
     const double overlap = share * before_;
     const LayerHinge hinge =
-        hinge_between(layers_.bands.back(), *fitted, overlap, options_.rivet_margin * layers_.unit);
-    const double thickness = options_.thickness * layers_.unit;
-    if (!layers_are_apart(layers_.bands.back(), *fitted, hinge, free, thickness, options_.grid))
+        hinge_between(front, *fitted, overlap, options_.rivet_margin * layers_.unit);
+    if (gape(*fitted, hinge) > wanted.gape ||
+        !is_hidden(*fitted, hinge, layers_.bands.size() == 1 ? wanted.free : 0) ||
+        !joint_turns({front, *fitted, hinge, overlap}, wanted.free, options_, layers_.unit)) {
       return {};
-    return OverlapFit{*fitted, share, free};
+    }
+    return OverlapFit{*fitted, share, wanted.free};
   }
 
-  [[nodiscard]] std::optional<OverlapFit> largest(double free) const {
+  /// How far the band lies below the rim of the one before it, at rest, where it does most.
+  [[nodiscard]] double gape(const FrustumBand& band, const LayerHinge& hinge) const {
+    double most = 0;
+    for (int k = 0; k <= kStripSamples; ++k) {
+      const double s = hinge.front_hole * k / kStripSamples;
+      most = std::max(most, band.height_above(layers_.bands.back().point(0, s)));
+    }
+    return most;
+  }
+
+  /// Whether the front rim stays behind that of the band before, at rest and turned either way.
+  [[nodiscard]] bool is_hidden(const FrustumBand& band, const LayerHinge& hinge,
+                               double turned) const {
+    const FrustumBand& front = layers_.bands.back();
+    for (const double angle : {0.0, -turned, turned}) {
+      const Eigen::Isometry3d turn = hinge_turn(hinge, angle);
+      for (int k = 0; k <= kStripSamples; ++k) {
+        const double s = band.half_angle * k / kStripSamples;
+        if (!(front.behind_front(turn * band.point(-band.length, s)) > 0)) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::optional<OverlapFit> largest(const Wanted& wanted) const {
     // A rivet's hole and as much again on either side of it.
     const double least = 4 * options_.rivet_radius * layers_.unit / before_;
-    for (int i = 0; i <= kOverlapSteps; ++i) {
-      const double share = kMostOverlap - i * (kMostOverlap - kLeastOverlap) / kOverlapSteps;
-      if (share < least) break;
-      auto fit = at(share, free);
+    for (double share = wanted.most; share >= std::max(least, kLeastOverlap) - kOverlapStep / 100;
+         share -= kOverlapStep) {
+      auto fit = at(share, wanted);
       if (!fit) continue;
-      double low = share, high = share + (kMostOverlap - kLeastOverlap) / kOverlapSteps;
-      for (int k = 0; i > 0 && k < kOverlapBisections; ++k) {
+      double low = share, high = std::min(share + kOverlapStep, wanted.most);
+      for (int k = 0; low < high && k < kOverlapBisections; ++k) {
         const double middle = (low + high) / 2;
-        const auto finer = at(middle, free);
+        const auto finer = at(middle, wanted);
         if (finer) fit = finer;
         (finer ? low : high) = middle;
       }
@@ -285,6 +323,10 @@ void describe(OptionVisitor& v, LayerOptions& o) {
               "at every joint the largest that fits",
        .min = 0,
        .max = kMostOverlap});
+  share("gape", o.gape,
+        "distance of a layer's rim from the layer below it, at rest, over the mean radius, that a "
+        "chosen overlap keeps to where it can",
+        1);
   v.value("oblique", o.oblique,
           {.doc = "whether the first layer may be cut obliquely, so that its first edge is met "
                   "where it is drawn; else it has the axis of the second"});

@@ -28,6 +28,7 @@ struct LayerOptions {
   /// How far a layer reaches below the one before it, over the visible length of that one; absent:
   /// at every joint the largest that fits.
   std::optional<double> overlap = {};
+  double gape = 0.1;  ///< largest distance of a rim from the layer below it, of a chosen overlap
   double thickness = 0.008;
   double clearance = 0.012;  ///< between a layer and the part of the next that lies below it
   /// Angle of a joint either way for which the strip below has room: on a body that grows thinner
@@ -83,9 +84,16 @@ struct ArticulatedLayers {
 /// `rivet_margin` inside of their lower borders.
 ///
 /// An overlap that is not given is the largest, up to 95 % of the visible length of the band
-/// before, with which such a radius exists, the whole band has that room when it is turned, and
-/// both solids are apart at rest and over `free_deg` either way. Where there is none the angle is
-/// made smaller, in quarters down to 0.
+/// before, with which
+///
+/// - such a radius exists, with room for the whole band when it is turned;
+/// - the joint turns by `free_deg` either way: the solids do not touch and no gap opens;
+/// - the band stays hidden below the one before: behind that one's front rim at rest, of the first
+///   band also when it is turned;
+/// - the rim of the band before stands off by at most `gape` at rest.
+///
+/// Where there is none, the last is dropped, and up to half of the visible length is taken, or else
+/// more; where there is none either, the angle is made smaller, in quarters down to 0.
 ///
 /// @throws Error  as `drawn_mirror_planes` and `fit_arc_circles`; a layer that does not fit below
 ///                the one before it (names both strokes)

@@ -92,13 +92,21 @@ Eigen::Vector3d FrustumBand::own(const Eigen::Vector3d& P) const {
   return {d.dot(axis), d.dot(up), d.dot(across())};
 }
 
+double FrustumBand::behind_front(const Eigen::Vector3d& P) const {
+  const Eigen::Vector3d p = own(P);
+  return (p.x() + length) * std::cos(front_tilt) - (p.y() - front_rise) * std::sin(front_tilt);
+}
+
+double FrustumBand::height_above(const Eigen::Vector3d& P) const {
+  const Eigen::Vector3d p = own(P);
+  return std::hypot(p.y(), p.z()) - radius_at(p.x());
+}
+
 bool FrustumBand::rims_are_apart() const {
   constexpr int kSamples = 48;
-  const Eigen::Vector3d front_axis(std::cos(front_tilt), -std::sin(front_tilt), 0);
-  const Eigen::Vector3d front_centre(-length, front_rise, 0);
   for (int k = 0; k <= kSamples; ++k) {
     const double s = half_angle * k / kSamples;
-    if (!((own_rear(s) - front_centre).dot(front_axis) > 0)) return false;
+    if (!(behind_front(point(0, s)) > 0)) return false;
     if (!(own_front(front_angle(s)).x() < 0)) return false;
   }
   return true;
@@ -112,9 +120,7 @@ bool FrustumBand::has_below(const Eigen::Vector3d& P, double depth) const {
     const double slope = (rear_radius - front_radius) / length;
     return std::hypot(p.y(), p.z()) <= radius_at(p.x()) - depth * std::hypot(1.0, slope);
   }
-  const Eigen::Vector3d front_centre(-length, front_rise, 0);
-  if ((p - front_centre).dot(Eigen::Vector3d(std::cos(front_tilt), -std::sin(front_tilt), 0)) < 0)
-    return true;
+  if (behind_front(P) < 0) return true;
   // The tangent plane that is highest above the point: there it lies beside the generator itself.
   const auto beside = [&](double s) {
     return (p - own_rear(s)).dot(own_normal(s).cross(own_generator(s)));

@@ -39,6 +39,10 @@ struct FrustumBand {
   [[nodiscard]] Eigen::Vector3d normal(double s) const;
   /// Coordinates of a point along axis, up and across, from the rear centre.
   [[nodiscard]] Eigen::Vector3d own(const Eigen::Vector3d& P) const;
+  /// Distance of a point behind the plane of the front rim (m).
+  [[nodiscard]] double behind_front(const Eigen::Vector3d& P) const;
+  /// Of a frustum: how far a point is from the axis, less the radius of the side there (m).
+  [[nodiscard]] double height_above(const Eigen::Vector3d& P) const;
   /// Angle t on the front rim at which the generator s ends.
   [[nodiscard]] double front_angle(double s) const;
   /// Whether no generator within the band crosses the plane of the other rim.

@@ -133,12 +133,18 @@ class JointLimits {
 
 }  // namespace
 
-bool layers_are_apart(const FrustumBand& front, const FrustumBand& behind, const LayerHinge& hinge,
-                      double free, double thickness, const BandGrid& grid) {
-  const LayerSolid a(band_solid(front, thickness, grid)), b(band_solid(behind, thickness, grid));
+bool joint_turns(const LayerJoint& joint, double angle, const LayerOptions& options, double unit) {
+  const auto covered = [&](double at) {
+    return rim_is_covered(joint.front, joint.behind, joint.hinge, joint.overlap,
+                          hinge_turn(joint.hinge, at));
+  };
+  if (options.keep_covered && !(covered(0) && covered(angle) && covered(-angle))) return false;
+  const double thickness = options.thickness * unit;
+  const LayerSolid front(band_solid(joint.front, thickness, options.grid));
+  const LayerSolid behind(band_solid(joint.behind, thickness, options.grid));
   for (const double turned : {0.0, -1.0, -0.5, 0.5, 1.0}) {
-    if (layers_touch(a, b, hinge_turn(hinge, turned * free))) return false;
-    if (free == 0) break;
+    if (layers_touch(front, behind, hinge_turn(joint.hinge, turned * angle))) return false;
+    if (angle == 0) break;
   }
   return true;
 }

@@ -4,10 +4,16 @@
 
 namespace geoprior::sketch {
 
-/// Whether two layers as solids do not touch at rest and turned about their hinge by `free` (rad)
-/// and half of it, both ways.
-bool layers_are_apart(const FrustumBand& front, const FrustumBand& behind, const LayerHinge& hinge,
-                      double free, double thickness, const BandGrid& grid);
+/// Two neighbouring layers at rest.
+struct LayerJoint {
+  const FrustumBand& front;
+  const FrustumBand& behind;
+  const LayerHinge& hinge;
+  double overlap = 0;  ///< m
+};
+
+/// Whether an angle (rad) and half of it are free both ways, in the sense of `set_joint_limits`.
+bool joint_turns(const LayerJoint& joint, double angle, const LayerOptions& options, double unit);
 
 /// Sets the largest angles by which each hinge can be turned, curling up and stretching out.
 ///

@@ -76,6 +76,7 @@ class SeenSurface {
   NearestTriangles nearest_;
   Eigen::MatrixX3d normals_;       ///< of the triangles, to the outside
   const std::vector<int>& patch_;  ///< of the triangles
+  double disagreement_;            ///< of photograph and drawing (pixels)
   double behind_;
   std::vector<char> outer_;  ///< pixels so near to a silhouette that the photograph may be off
   bool moved_inside_ = false;
@@ -88,7 +89,8 @@ SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneVie
       origin_(view.picture.origin),
       size_(view.picture.size),
       normals_(triangle_normals(result.surface.mesh)),
-      patch_(result.surface.patch) {
+      patch_(result.surface.patch),
+      disagreement_(result.disagreement) {
   const TriMesh& mesh = result.surface.mesh;
   // A square grid over the picture, about as fine as its pixels.
   grid_.origin = origin_;
@@ -101,14 +103,16 @@ SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneVie
   mark_silhouettes();
 }
 
-/// Whether the surface ends beside a pixel, or lies much deeper or higher there.
+/// Whether the surface ends beside a pixel, lies much deeper or higher there, or is of another
+/// patch.
 bool SeenSurface::at_silhouette(int x, int y) const {
   const std::size_t own = pixel(x, y);
   if (!nearest_.covered(own)) return false;
+  const int patch = patch_[nearest_.triangle[own]];
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, grid_.height - 1); ++j) {
     for (int i = std::max(x - 1, 0); i <= std::min(x + 1, grid_.width - 1); ++i) {
       const std::size_t other = pixel(i, j);
-      if (!nearest_.covered(other) ||
+      if (!nearest_.covered(other) || patch_[nearest_.triangle[other]] != patch ||
           std::abs(nearest_.depth[other] - nearest_.depth[own]) > behind_)
         return true;
     }
@@ -118,9 +122,9 @@ bool SeenSurface::at_silhouette(int x, int y) const {
 
 void SeenSurface::mark_silhouettes() {
   outer_.assign(nearest_.triangle.size(), 0);
-  if (options_.disagreement == 0) return;
+  if (disagreement_ == 0) return;
   constexpr double kMixed = 1;
-  const double reach = options_.disagreement + kMixed;
+  const double reach = disagreement_ + kMixed;
   const int most = static_cast<int>(reach);
   for (int y = 0; y < grid_.height; ++y) {
     for (int x = 0; x < grid_.width; ++x) {
@@ -145,7 +149,7 @@ bool SeenSurface::inner(int x, int y, int patch) const {
 std::optional<Eigen::Vector2d> SeenSurface::nearest_inner(const Eigen::Vector2d& at,
                                                           int patch) const {
   constexpr double kReach = 4;
-  const int reach = static_cast<int>(std::ceil(kReach * (options_.disagreement + 1)));
+  const int reach = static_cast<int>(std::ceil(kReach * (disagreement_ + 1)));
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
   std::optional<Eigen::Vector2d> best;
   for (int j = y - reach; j <= y + reach; ++j) {
@@ -186,7 +190,7 @@ std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
   if (nearest_.depth[i] > point.z() + behind_) return {};
   const Eigen::Vector2d in_photo(texture.x() * photo_.width - 0.5,
                                  (1 - texture.y()) * photo_.height - 0.5);
-  if (options_.disagreement == 0) return photo_colour(photo_, in_photo);
+  if (disagreement_ == 0) return photo_colour(photo_, in_photo);
   // Four pixels are mixed.
   const int left = static_cast<int>(std::floor(at.x())), top = static_cast<int>(std::floor(at.y()));
   const auto unsafe = [&](int column, int row) {
@@ -415,12 +419,6 @@ void describe(OptionVisitor& v, BakeOptions& o) {
           {.doc = "depth by which what hides must be nearer, over the surface's diagonal",
            .min = 0,
            .max = 1});
-  v.value(
-      "disagreement", o.disagreement,
-      {.doc = "pixels of the photograph by which it and the drawing may disagree at silhouettes; "
-              "colours beside them are taken from farther inside",
-       .min = 0,
-       .max = 50});
 }
 
 BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,

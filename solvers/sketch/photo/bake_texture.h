@@ -17,8 +17,6 @@ struct BakeOptions {
   int bleed = 4;
   double least_facing = 0.2;
   double behind = 0.01;
-  /// By how many of its pixels photograph and drawing may disagree.
-  double disagreement = 2;
 };
 void describe(OptionVisitor& v, BakeOptions& options);
 
@@ -43,11 +41,12 @@ struct BakedPattern {
 /// connected surface is its outside is decided by what most of its visible area turns to the eye.
 /// The result is symmetric: a sign on one half is on both, mirrored.
 ///
-/// What lies nearer to a silhouette in the picture than photograph and drawing may disagree, one
+/// What lies nearer to a silhouette in the picture than photograph and drawing may disagree
+/// (`OneViewResult::disagreement`), one
 /// pixel more for the mixed pixels along an edge, has the colour of the nearest pixel of its patch
 /// that lies farther in: else a traced line that is two pixels off paints the background, or what
-/// lies behind, along the borders of panels. Silhouettes are where the surface ends in the picture
-/// or its depth jumps.
+/// lies behind or beside, along the borders of panels. Silhouettes here are where the surface ends
+/// in the picture, its depth jumps, or another patch begins.
 ///
 /// Colours are those of the photograph, with its light and shade in them.
 ///

@@ -170,6 +170,26 @@ TEST_F(DrawingFileTest, ReadsTheAnnotationsOfAPhoto) {
   EXPECT_EQ(view.strokes[4].kind, StrokeKind::occlusion);
 }
 
+// An edge of a layer is called by its own name, its panel, its label, or a layer of the drawing
+// program in which nothing else lies.
+TEST_F(DrawingFileTest, NamesTheEdgesOfRigidLayers) {
+  const auto within = [](const std::string& label, const std::string& inside) {
+    return "<g inkscape:groupmode='layer' inkscape:label='" + label + "'>" + inside + "</g>";
+  };
+  const auto arc = [](const std::string& id, const std::string& more) {
+    return "<path id='" + id + "' " + more + " stroke='#800080' d='M1 1 2 2 3 1 5 4'/>";
+  };
+  const DrawingFile file = read(
+      layer("photo", arc("a", "data-name='head'") + arc("b", "data-panel='neck'") +
+                         within("back", arc("c", "")) + within("two", arc("d", "") + arc("e", "")) +
+                         arc("f", "inkscape:label='tail'") +
+                         "<line id='sym-a' x1='10' y1='10' x2='10' y2='30' stroke='orange'/>"
+                         "<line id='sym-b' x1='10' y1='10' x2='20' y2='15' stroke='#ffa500'/>"));
+  std::vector<std::string> names;
+  for (const Stroke& stroke : file.drawing.views.at(0).strokes) names.push_back(stroke.name);
+  EXPECT_THAT(names, ElementsAre("head", "neck", "back", "", "", "tail", "sym-a", "sym-b"));
+}
+
 TEST_F(DrawingFileTest, TakesTheScaleOfTheFileOrTheOption) {
   const std::string layers = layer("front", kOutline) + kSide;
   const auto perimeter = [](const DrawingFile& file) {

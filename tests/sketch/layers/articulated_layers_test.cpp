@@ -144,6 +144,21 @@ TEST(ArcCircle, RefusesTooFewArcsAndLayersOutOfOrder) {
               AllOf(HasSubstr("out of order"), HasSubstr("arc-")));
 }
 
+// A first edge that is tilted by 12 degrees keeps its radius and its tilt; forced onto the axis of
+// the second, as one may still ask for, it is another circle.
+TEST(ArcCircle, FirstEdgeIsMetWhereItIsDrawn) {
+  SyntheticLayerOptions tilted;
+  tilted.first_tilt_deg = 12;
+  const SyntheticView body = synthetic_layers(tilted);
+  const MirrorPlane plane = drawn_mirror_planes(body.view).chosen;
+  const auto met = fit_arc_circles(body.view, plane);
+  EXPECT_NEAR(met[0].radius, 0.6, 1e-9);
+  EXPECT_NEAR(std::acos(met[0].axis.dot(met[1].axis)), 12 * kDegree, 1e-9);
+  const auto forced = fit_arc_circles(body.view, plane, true, false);
+  EXPECT_EQ(forced[0].axis, forced[1].axis);
+  EXPECT_GT(forced[0].rms, 0.02 * 0.6);
+}
+
 FrustumBand cone_band(double front, double rear) {
   FrustumBand band;
   band.length = 0.3;
@@ -176,6 +191,80 @@ TEST(FrustumBand, CylinderUnrollsToARectangleAndNearlyCylindersTowardsIt) {
     EXPECT_NEAR((band.unrolled(0, 1.8) - Eigen::Vector2d(-1.8, 0)).norm(), 0, 20 * taper + 1e-14);
     EXPECT_NEAR((band.unrolled(-0.3, -1.8) - Eigen::Vector2d(1.8, 0.3)).norm(), 0,
                 20 * taper + 1e-14);
+  }
+}
+
+// The limit of a tilt that vanishes is the frustum, whose pieces have a closed form.
+TEST(FrustumBand, ObliqueBandTendsToTheFrustum) {
+  const FrustumBand cone = cone_band(0.7, 1.0);
+  FrustumBand oblique = cone;
+  oblique.front_rise = 1e-9;
+  for (const double s : {-1.8, -0.6, 0.0, 0.9, 1.8}) {
+    for (const double x : {-0.3, -0.1, 0.0}) {
+      EXPECT_NEAR((oblique.point(x, s) - cone.point(x, s)).norm(), 0, 1e-8);
+      EXPECT_NEAR((oblique.unrolled(x, s) - cone.unrolled(x, s)).norm(), 0, 1e-7);
+    }
+    EXPECT_NEAR((oblique.normal(s) - cone.normal(s)).norm(), 0, 1e-7);
+  }
+}
+
+FrustumBand oblique_band() {
+  FrustumBand band = cone_band(0.8, 1.0);
+  band.length = 0.6;
+  band.front_tilt = 0.2;
+  band.front_rise = 0.05;
+  band.half_angle = 1.5;
+  return band;
+}
+
+// Both rims are circles as given; along a generator the tangent plane touches both of them.
+TEST(FrustumBand, ObliqueBandHasBothCirclesAndOneTangentPlaneAlongAGenerator) {
+  const FrustumBand band = oblique_band();
+  ASSERT_TRUE(band.rims_are_apart());
+  const Eigen::Vector3d front_axis = std::cos(0.2) * band.axis - std::sin(0.2) * band.up;
+  const Eigen::Vector3d centre = band.rear - 0.6 * band.axis + 0.05 * band.up;
+  for (const double s : {-1.5, -0.7, 0.0, 0.4, 1.1, 1.5}) {
+    const Eigen::Vector3d front = band.point(-0.6, s) - centre, rear = band.point(0, s) - band.rear;
+    EXPECT_NEAR(front.norm(), 0.8, 1e-12);
+    EXPECT_NEAR(front.dot(front_axis), 0, 1e-12);
+    EXPECT_NEAR(rear.norm(), 1, 1e-12);
+    const Eigen::Vector3d n = band.normal(s);
+    EXPECT_NEAR(n.dot(front_axis.cross(front)), 0, 1e-12) << "tangent of the front circle";
+    EXPECT_NEAR(n.dot(band.axis.cross(rear)), 0, 1e-12) << "tangent of the rear circle";
+    EXPECT_NEAR(n.dot(band.point(0, s) - band.point(-0.6, s)), 0, 1e-12);
+    EXPECT_GT(n.dot(rear), 0);
+  }
+}
+
+// An isometry keeps the lengths of curves: of generators, of rims by fine chords, and of the
+// curve half way along all generators.
+TEST(FrustumBand, ObliqueBandIsUnrolledWithoutStretch) {
+  const FrustumBand band = oblique_band();
+  constexpr int kSteps = 400;
+  for (const double x : {-0.6, -0.3, 0.0}) {
+    double flat = 0, space = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double a = -1.5 + 3.0 * i / kSteps, b = a + 3.0 / kSteps;
+      flat += (band.unrolled(x, b) - band.unrolled(x, a)).norm();
+      space += (band.point(x, b) - band.point(x, a)).norm();
+    }
+    EXPECT_NEAR(flat / space, 1, 1e-7) << x;
+  }
+  for (const double s : {-1.5, 0.0, 0.8}) {
+    const double length = (band.point(-0.6, s) - band.point(0, s)).norm();
+    EXPECT_NEAR((band.unrolled(-0.6, s) - band.unrolled(0, s)).norm(), length, 1e-12);
+  }
+  EXPECT_NEAR((band.unrolled(-0.2, 1.3) + band.unrolled(-0.2, -1.3)).x(), 0, 1e-9) << "symmetric";
+}
+
+// A point moved inwards along the normal lies below the band by as much.
+TEST(FrustumBand, KnowsWhatLiesBelowIt) {
+  for (const FrustumBand& band : {cone_band(0.8, 1.0), oblique_band()}) {
+    for (const double s : {0.0, 0.5, -1.2}) {
+      const Eigen::Vector3d p = band.point(-0.4 * band.length, s) - 0.05 * band.normal(s);
+      EXPECT_TRUE(band.has_below(p, 0.0499));
+      EXPECT_FALSE(band.has_below(p, 0.0501));
+    }
   }
 }
 
@@ -278,6 +367,65 @@ TEST(ArticulatedLayers, HolesLieOnBothLayersOnOneLine) {
     EXPECT_LT(hinge.front_hole, layers.bands[j].half_angle);
     EXPECT_LT(hinge.rear_hole, layers.bands[j + 1].half_angle);
   }
+}
+
+/// A shell that grows towards the tail by three times its radius within little more than that.
+SyntheticLayerOptions widening_shell() {
+  SyntheticLayerOptions body;
+  body.arcs = 5;
+  body.end_radius = 0.3;
+  body.radius = 0.6;
+  body.rear_radius = 0.9;
+  body.length = 0.5;
+  body.bend_deg = 0;
+  return body;
+}
+
+// A given overlap is refused with what to do about it, where a chosen one fits; what is chosen
+// turns by the angle that is recorded, without contact.
+TEST(ArticulatedLayers, ChooseAnOverlapWhereAGivenOneDoesNotFit) {
+  const SyntheticLayerOptions body = widening_shell();
+  LayerOptions given;
+  given.overlap = 0.95;
+  given.free_deg = 20;
+  EXPECT_THAT(test::error_of([&] { known_layers(given, body); }),
+              AllOf(HasSubstr("arc-3"), HasSubstr("less overlap, or none")));
+  const LayerOptions chosen;
+  const ArticulatedLayers layers = known_layers(chosen, body);
+  ASSERT_EQ(layers.choices.size(), layers.hinges.size());
+  for (std::size_t j = 0; j < layers.hinges.size(); ++j) {
+    EXPECT_TRUE(layers.choices[j].chosen);
+    EXPECT_GT(layers.choices[j].share, 0);
+    EXPECT_GE(layers.hinges[j].curl, layers.choices[j].free - 0.05 * kDegree) << j;
+    EXPECT_GE(layers.hinges[j].stretch, layers.choices[j].free - 0.05 * kDegree) << j;
+  }
+  for (const double share : {-1.0, 0.0, 1.0}) EXPECT_EQ(contacts(layers, chosen, share), 0);
+}
+
+// Both drawn edges of a first layer whose edges are not parallel, and every rear edge, lie on the
+// layers; its joint does not touch either.
+TEST(ArticulatedLayers, MeetATiltedFirstEdge) {
+  SyntheticLayerOptions body;
+  body.first_tilt_deg = -12;
+  const LayerOptions options;
+  const ArticulatedLayers layers = known_layers(options, body);
+  const FrustumBand& first = layers.bands.front();
+  ASSERT_TRUE(first.oblique());
+  for (const double s : {0.0, 0.6, -1.4}) {
+    const Eigen::Vector3d d = first.point(-first.length, s) - layers.circles[0].centre;
+    EXPECT_NEAR(d.norm(), 0.6, 1e-9);
+    EXPECT_NEAR(d.dot(layers.circles[0].axis), 0, 1e-9);
+  }
+  EXPECT_GE(first.front_angle(first.half_angle), layers.circles[0].half_angle - 1e-9);
+  EXPECT_GE(first.half_angle, layers.circles[1].half_angle - 1e-9);
+  for (const double share : {-1.0, 0.0, 1.0}) EXPECT_EQ(contacts(layers, options, share), 0);
+}
+
+TEST(ArticulatedLayers, RefuseEdgesOfTheFirstLayerThatCross) {
+  SyntheticLayerOptions body;
+  body.first_tilt_deg = 45;
+  EXPECT_THAT(test::error_of([&] { known_layers({}, body); }),
+              AllOf(HasSubstr("arc-1"), HasSubstr("arc-2"), HasSubstr("cross")));
 }
 
 // Scale is free: lengths are shares of the mean radius.

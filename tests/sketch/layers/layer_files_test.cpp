@@ -73,6 +73,23 @@ TEST(LayerFiles, HaveHolesAndPlacementsInTheirOwnLayers) {
   }
 }
 
+// The names of a drawing's arcs are on the pieces of every file.
+TEST(LayerFiles, PiecesHaveTheNamesOfTheirRearEdges) {
+  const ArticulatedLayers layers = build_layers(drawn_view("lobster.svg"), {});
+  const Pattern pattern = layer_pattern(layers, {}, 0.02);
+  for (std::size_t j = 0; j < pattern.pieces.size(); ++j)
+    EXPECT_EQ(pattern.pieces[j].name, "segment " + std::to_string(j + 1));
+  for (const FabricationFile& file : fabrication_files(pattern, {})) {
+    if (file.name == "pattern.svg") {
+      EXPECT_GE(occurrences(file.bytes, "segment 3"), 1U);
+    } else if (file.name == "pattern.dxf") {
+      EXPECT_GE(occurrences(file.bytes, "PIECE NAME: "), layers.bands.size());
+    } else if (file.name == "pattern.json") {
+      EXPECT_EQ(nlohmann::json::parse(file.bytes)["pieces"][2]["name"], "segment 3");
+    }
+  }
+}
+
 /// A pattern without rivets is written as before there were any.
 TEST(LayerFiles, PatternsWithoutHolesHaveNoSuchLayers) {
   const LayerOptions options;

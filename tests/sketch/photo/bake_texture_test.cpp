@@ -196,6 +196,64 @@ TEST(BakePattern, IsSymmetric) {
   }
 }
 
+/// A red square in the middle of a green photograph, as large as the drawn object's outline.
+PixelImage photo_of_bag(const FlatObject& bag, int pixels, const Eigen::Vector2i& shift) {
+  const PixelGrid grid{bag.view.picture.origin, bag.view.picture.size.x() / pixels, pixels, pixels};
+  const NearestTriangles seen = nearest_triangles(bag.result.surface.mesh, grid);
+  PixelImage photo = uniform_image(pixels, pixels, {40, 160, 90});
+  for (int y = 0; y < pixels; ++y) {
+    for (int x = 0; x < pixels; ++x) {
+      const int i = x - shift.x(), j = y - shift.y();
+      if (i >= 0 && j >= 0 && i < pixels && j < pixels && seen.covered(j * pixels + i))
+        photo.at(x, y) = {200, 60, 50};
+    }
+  }
+  return photo;
+}
+
+/// Share of the texels beside borders that are rather green than red.
+double green_share(const FlatObject& bag, const PixelImage& photo, double disagreement) {
+  BakeOptions options;
+  options.most_side = 500;
+  OneViewResult result = bag.result;
+  result.disagreement = disagreement;
+  const BakedPattern baked = bake_pattern(bag.view, photo, result, bag.pattern, options);
+  const Part texels = border_texels(baked.image, baked.grid, bag.pattern);
+  const auto& colour = texels.require_array("colour", NamedArray::On::points, 3).values;
+  EXPECT_GT(colour.rows(), 1000);
+  double green = 0;
+  for (Eigen::Index i = 0; i < colour.rows(); ++i) green += colour(i, 1) > colour(i, 0) ? 1 : 0;
+  return green / static_cast<double>(colour.rows());
+}
+
+// Drawing and photograph differ by two pixels, whichever way: no background on the panels, where
+// colours read at the line itself have it; with three the allowance is used up.
+TEST(BakePattern, BackgroundDoesNotBleedOverPanelsOfADrawingThatIsTwoPixelsOff) {
+  const FlatObject bag = flat_bag();
+  for (const Eigen::Vector2i& shift :
+       {Eigen::Vector2i(2, 0), Eigen::Vector2i(0, -2), Eigen::Vector2i(-1, 1)}) {
+    const PixelImage photo = photo_of_bag(bag, 240, shift);
+    EXPECT_EQ(green_share(bag, photo, 2), 0);
+    EXPECT_GT(green_share(bag, photo, 0), 0.01);
+  }
+  EXPECT_GT(green_share(bag, photo_of_bag(bag, 240, {5, 0}), 2), 0.001);
+}
+
+// Two pixels from the border of a rectangle of 40 x 20 pixels lies all but one of 36 x 16.
+TEST(TexturedFiles, TexelsBesideABorderAreCounted) {
+  Pattern pattern;
+  PatternPiece piece;
+  piece.points.resize(4, 2);
+  piece.points << 5, 5, 45, 5, 45, 25, 5, 25;
+  piece.triangles.resize(2, 3);
+  piece.triangles << 0, 1, 2, 0, 2, 3;
+  pattern.pieces.push_back(piece);
+  const PixelGrid grid{{0, 0}, 1, 50, 30};
+  const Part texels = border_texels(uniform_image(50, 30, {1, 2, 3}), grid, pattern);
+  EXPECT_EQ(texels.points.rows(), 40 * 20 - 36 * 16);
+  EXPECT_EQ(texels.require_array("colour", NamedArray::On::points, 3).values(7, 2), 3);
+}
+
 TEST(BakePattern, TooFineAPictureIsRefused) {
   const FlatObject tent = flat_tent();
   BakeOptions options;
