@@ -1,11 +1,16 @@
 #include "experiments/sketch/texture_measures.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "testbed/formats/svg/color.h"
 
 namespace geoprior::sketch {
+
+double key_excess(const Eigen::RowVector3d& colour, const Eigen::RowVector3d& background) {
+  Eigen::Index key = 0;
+  background.maxCoeff(&key);
+  return colour(key) - std::max(colour((key + 1) % 3), colour((key + 2) % 3));
+}
 
 std::optional<double> background_texels(const SketchScene& scene, const Frame& frame) {
   if (!scene.background || frame.find_part("texels") == nullptr) return {};
@@ -15,17 +20,11 @@ std::optional<double> background_texels(const SketchScene& scene, const Frame& f
   if (colours.rows() == 0) return {};
   const SvgColour named = *parse_svg_colour(*scene.background);
   const Eigen::RowVector3d background(named.red, named.green, named.blue);
-  Eigen::RowVector3d median;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double> values(colours.col(k).begin(), colours.col(k).end());
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    median(k) = values[values.size() / 2];
-  }
-  constexpr double kShare = 0.3, kLeast = 40;
-  const double near = std::max(kShare * (median - background).norm(), kLeast);
+  constexpr double kShare = 0.15;
+  const double least = kShare * key_excess(background, background);
   double count = 0;
   for (Eigen::Index i = 0; i < colours.rows(); ++i)
-    count += (colours.row(i) - background).norm() < near ? 1 : 0;
+    count += key_excess(colours.row(i), background) > least ? 1 : 0;
   return count / static_cast<double>(colours.rows());
 }
 

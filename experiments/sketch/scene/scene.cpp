@@ -1,5 +1,7 @@
 #include "experiments/sketch/scene/scene.h"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <mutex>
 #include <utility>
@@ -99,6 +101,15 @@ std::optional<std::string> known_background(const TexturedFileOptions& textures)
   if (textures.background && !parse_svg_colour(*textures.background)) {
     throw Error("'" + *textures.background + "' is no colour", "scene.textures.background",
                 "#rrggbb");
+  }
+  if (!textures.background) return {};
+  const SvgColour c = *parse_svg_colour(*textures.background);
+  constexpr int kLeast = 40;
+  std::array<int, 3> channels{c.red, c.green, c.blue};
+  std::sort(channels.begin(), channels.end());
+  if (channels[2] - channels[1] < kLeast) {
+    throw Error("'" + *textures.background + "' has no hue that tells it from an object",
+                "scene.textures.background", "one channel 40 of 255 above the others");
   }
   return textures.background;
 }

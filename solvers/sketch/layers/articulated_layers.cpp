@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -16,10 +17,10 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr int kBisections = 60;
-constexpr int kRadiusBisections = 40;
+constexpr int kRadiusBisections = 30;
 constexpr int kStripSamples = 24;  // of an angle, over half of the band
 constexpr int kStripRows = 16;
-constexpr double kMostOverlap = 0.95, kLeastOverlap = 0.05, kOverlapStep = 0.05;
+constexpr double kMostOverlap = 0.95, kOverlapStep = 0.05;
 constexpr double kMostGaping = 0.5;  // overlap of layers that cannot but gape
 constexpr int kOverlapBisections = 5;
 
@@ -184,7 +185,7 @@ class OverlapChoice {
   }
 
   /// The largest overlap that fits, with the angle that was asked for or a part of it.
-  [[nodiscard]] std::optional<OverlapFit> largest() const {
+  std::optional<OverlapFit> largest() {
     constexpr int kParts = 4;
     for (int part = kParts; part >= 0; --part) {
       const double free = options_.free_deg * kDegree * part / kParts;
@@ -208,19 +209,38 @@ class OverlapChoice {
     double free = 0;  ///< rad
   };
 
-  [[nodiscard]] std::optional<OverlapFit> at(double share, const Wanted& wanted) const {
-    const auto fitted = band(share, wanted.free);
+  /// What a share gives, computed once.
+  struct Candidate {
+    FrustumBand band;
+    LayerHinge hinge;
+    double gape = 0;
+    bool hidden = false;
+    std::optional<bool> turns = {};
+  };
+
+  [[nodiscard]] std::optional<Candidate> candidate(double share, double free) const {
+    const auto fitted = band(share, free);
     if (!fitted) return {};
-    const FrustumBand& front = layers_.bands.back();
-    const double overlap = share * before_;
-    const LayerHinge hinge =
-        hinge_between(front, *fitted, overlap, options_.rivet_margin * layers_.unit);
-    if (gape(*fitted, hinge) > wanted.gape ||
-        !is_hidden(*fitted, hinge, layers_.bands.size() == 1 ? wanted.free : 0) ||
-        !joint_turns({front, *fitted, hinge, overlap}, wanted.free, options_, layers_.unit)) {
-      return {};
+    Candidate made{*fitted, {}};
+    made.hinge = hinge_between(layers_.bands.back(), made.band, share * before_,
+                               options_.rivet_margin * layers_.unit);
+    made.gape = gape(made.band, made.hinge);
+    made.hidden = is_hidden(made.band, made.hinge, layers_.bands.size() == 1 ? free : 0);
+    return made;
+  }
+
+  std::optional<OverlapFit> at(double share, const Wanted& wanted) {
+    const auto [found, is_new] = candidates_.try_emplace({wanted.free, share});
+    if (is_new) found->second = candidate(share, wanted.free);
+    if (!found->second) return {};
+    Candidate& c = *found->second;
+    if (!c.hidden || c.gape > wanted.gape) return {};
+    if (!c.turns) {
+      c.turns = joint_turns({layers_.bands.back(), c.band, c.hinge, share * before_}, wanted.free,
+                            options_, layers_.unit);
     }
-    return OverlapFit{*fitted, share, wanted.free};
+    if (!*c.turns) return {};
+    return OverlapFit{c.band, share, wanted.free};
   }
 
   /// How far the band lies below the rim of the one before it, at rest, where it does most.
@@ -247,11 +267,12 @@ class OverlapChoice {
     return true;
   }
 
-  [[nodiscard]] std::optional<OverlapFit> largest(const Wanted& wanted) const {
+  std::optional<OverlapFit> largest(const Wanted& wanted) {
     // A rivet's hole and as much again on either side of it.
     const double least = 4 * options_.rivet_radius * layers_.unit / before_;
-    for (double share = wanted.most; share >= std::max(least, kLeastOverlap) - kOverlapStep / 100;
-         share -= kOverlapStep) {
+    for (int step = static_cast<int>(std::lround(wanted.most / kOverlapStep)); step > 0; --step) {
+      const double share = step * kOverlapStep;
+      if (share < least) break;
       auto fit = at(share, wanted);
       if (!fit) continue;
       double low = share, high = std::min(share + kOverlapStep, wanted.most);
@@ -270,6 +291,7 @@ class OverlapChoice {
   FrustumBand rest_;
   const LayerOptions& options_;
   double before_ = 0;  ///< visible length of the band before (m)
+  std::map<std::pair<double, double>, std::optional<Candidate>> candidates_;  ///< by angle, share
 };
 
 void add_band(ArticulatedLayers& layers, std::size_t k, const LayerOptions& options) {
@@ -285,7 +307,7 @@ void add_band(ArticulatedLayers& layers, std::size_t k, const LayerOptions& opti
     layers.overlaps.push_back(0);
     return;
   }
-  const OverlapChoice choice(layers, band_to(circle), options);
+  OverlapChoice choice(layers, band_to(circle), options);
   std::optional<OverlapFit> fit;
   const double free = options.free_deg * kDegree;
   if (!options.overlap) {

@@ -248,7 +248,9 @@ TEST(FrustumBand, ObliqueBandIsUnrolledWithoutStretch) {
       flat += (band.unrolled(x, b) - band.unrolled(x, a)).norm();
       space += (band.point(x, b) - band.point(x, a)).norm();
     }
-    EXPECT_NEAR(flat / space, 1, 1e-7) << x;
+    // Chords of 1/400 of the rim are shorter in space, where it is bent more, by 3^2 / (24 *
+    // 400^2).
+    EXPECT_NEAR(flat / space, 1, 3e-6) << x;
   }
   for (const double s : {-1.5, 0.0, 0.8}) {
     const double length = (band.point(-0.6, s) - band.point(0, s)).norm();

@@ -70,7 +70,7 @@ TEST_F(DrawnEdges, AreMeasuredOverTheirRadii) {
 TEST_F(DrawnEdges, AreNotMeasuredWithoutRims) { EXPECT_FALSE(edge_measures(scene, frame).drawn); }
 
 // One of four texels is the background's green, one is near to it, two are red.
-TEST(BackgroundTexels, AreCountedByTheirDistanceFromTheKnownColour) {
+TEST(BackgroundTexels, AreCountedByTheHueOfTheKnownColour) {
   SketchScene scene;
   Frame frame;
   Part& texels = frame.parts["texels"];
@@ -82,6 +82,8 @@ TEST(BackgroundTexels, AreCountedByTheirDistanceFromTheKnownColour) {
   EXPECT_FALSE(background_texels(scene, frame)) << "not known";
   scene.background = "#28a05a";
   EXPECT_EQ(background_texels(scene, frame).value(), 0.5);
+  EXPECT_EQ(key_excess({50, 160, 90}, {40, 160, 90}), 70);
+  EXPECT_LT(key_excess({200, 60, 50}, {40, 160, 90}), 0);
 }
 
 }  // namespace
