@@ -26,6 +26,13 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
   return count;
 }
 
+/// Overlaps that are given: choosing them takes longer, and files do not differ by how they came.
+LayerOptions given_overlaps() {
+  LayerOptions options;
+  options.overlap = 0.4;
+  return options;
+}
+
 View drawn_view(const std::string& name) {
   const std::string file = std::string(GEOPRIOR_SOURCE_DIR) + "/experiments/sketch/" + name;
   return read_drawing(file, {}).drawing.views.at(0);
@@ -36,7 +43,7 @@ TEST(LayerDrawings, HaveTheirArcsInOrderWithNames) {
   for (const auto& [name, arcs] : {std::pair{"armadillo.svg", 10U}, {"lobster.svg", 7U}}) {
     const View view = drawn_view(name);
     EXPECT_EQ(strokes_of(view, StrokeKind::arc).size(), arcs) << name;
-    const ArticulatedLayers layers = build_layers(view, {});
+    const ArticulatedLayers layers = build_layers(view, given_overlaps());
     EXPECT_EQ(layers.bands.size(), arcs - 1);
     EXPECT_EQ(layers.hinges.size(), arcs - 2);
     for (const ArcCircle& circle : layers.circles) {
@@ -50,7 +57,7 @@ TEST(LayerDrawings, HaveTheirArcsInOrderWithNames) {
 
 // Four holes a joint: two on each of its layers; a placement line on every layer but the first.
 TEST(LayerFiles, HaveHolesAndPlacementsInTheirOwnLayers) {
-  const LayerOptions options;
+  const LayerOptions options = given_overlaps();
   const ArticulatedLayers layers = build_layers(drawn_view("lobster.svg"), options);
   const Pattern pattern = layer_pattern(layers, options, 0.02);
   FabricationOptions fabrication;
@@ -75,8 +82,8 @@ TEST(LayerFiles, HaveHolesAndPlacementsInTheirOwnLayers) {
 
 // The names of a drawing's arcs are on the pieces of every file.
 TEST(LayerFiles, PiecesHaveTheNamesOfTheirRearEdges) {
-  const ArticulatedLayers layers = build_layers(drawn_view("lobster.svg"), {});
-  const Pattern pattern = layer_pattern(layers, {}, 0.02);
+  const ArticulatedLayers layers = build_layers(drawn_view("lobster.svg"), given_overlaps());
+  const Pattern pattern = layer_pattern(layers, given_overlaps(), 0.02);
   for (std::size_t j = 0; j < pattern.pieces.size(); ++j)
     EXPECT_EQ(pattern.pieces[j].name, "segment " + std::to_string(j + 1));
   for (const FabricationFile& file : fabrication_files(pattern, {})) {
@@ -92,7 +99,7 @@ TEST(LayerFiles, PiecesHaveTheNamesOfTheirRearEdges) {
 
 /// A pattern without rivets is written as before there were any.
 TEST(LayerFiles, PatternsWithoutHolesHaveNoSuchLayers) {
-  const LayerOptions options;
+  const LayerOptions options = given_overlaps();
   Pattern pattern = layer_pattern(build_layers(drawn_view("lobster.svg"), options), options, 0.02);
   for (PatternPiece& piece : pattern.pieces) {
     piece.holes.clear();
