@@ -9,6 +9,7 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr double kFirstStep = 0.02;  // of the search for the generator below which a point is (rad)
+constexpr double kSameGenerator = 1e-7;  // rad
 constexpr int kSecantSteps = 4;
 constexpr int kPlaceBisections = 60;
 constexpr double kUnrollStep = 0.005;  // rad
@@ -123,7 +124,8 @@ bool FrustumBand::has_below(const Eigen::Vector3d& P, double depth) const {
   if (behind_front(P) < 0) return true;
   // The tangent plane that is highest above the point: there it lies beside the generator itself.
   const auto beside = [&](double s) {
-    return (p - own_rear(s)).dot(own_normal(s).cross(own_generator(s)));
+    const Eigen::Vector3d along(0, -std::sin(s), std::cos(s)), generator = own_generator(s);
+    return (p - own_rear(s)).dot(generator.cross(along).normalized().cross(generator));
   };
   double s = std::atan2(p.z(), p.y()), before = s + kFirstStep;
   double value = beside(s), value_before = beside(before);
@@ -132,6 +134,7 @@ bool FrustumBand::has_below(const Eigen::Vector3d& P, double depth) const {
     before = s;
     value_before = value;
     s = next;
+    if (std::abs(s - before) < kSameGenerator) break;
     value = beside(s);
   }
   return (p - own_rear(s)).dot(own_normal(s)) <= -depth;
