@@ -187,15 +187,16 @@ class OverlapChoice {
   /// The largest overlap that fits, with the angle that was asked for or a part of it.
   std::optional<OverlapFit> largest() {
     constexpr int kParts = 4;
-    for (int part = kParts; part >= 0; --part) {
-      const double free = options_.free_deg * kDegree * part / kParts;
-      constexpr double kAny = std::numeric_limits<double>::infinity();
-      for (const Wanted& wanted :
-           {Wanted{kMostOverlap, options_.gape * layers_.unit, free},
-            Wanted{kMostGaping, kAny, free}, Wanted{kMostOverlap, kAny, free}}) {
-        if (auto fit = largest(wanted)) return fit;
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    for (const bool hidden : {true, false}) {
+      for (int part = kParts; part >= (hidden ? 1 : 0); --part) {
+        const double free = options_.free_deg * kDegree * part / kParts;
+        for (const Wanted& wanted :
+             {Wanted{kMostOverlap, options_.gape * layers_.unit, free, hidden},
+              Wanted{kMostGaping, kAny, free, hidden}, Wanted{kMostOverlap, kAny, free, hidden}}) {
+          if (auto fit = largest(wanted)) return fit;
+        }
       }
-      if (free == 0) break;
     }
     return {};
   }
@@ -207,6 +208,7 @@ class OverlapChoice {
     double most = 0;  ///< overlap
     double gape = 0;  ///< between the rim before and the band (m)
     double free = 0;  ///< rad
+    bool hidden = true;
   };
 
   /// What a share gives, computed once.
@@ -234,7 +236,7 @@ class OverlapChoice {
     if (is_new) found->second = candidate(share, wanted.free);
     if (!found->second) return {};
     Candidate& c = *found->second;
-    if (!c.hidden || c.gape > wanted.gape) return {};
+    if ((wanted.hidden && !c.hidden) || c.gape > wanted.gape) return {};
     if (!c.turns) {
       c.turns = joint_turns({layers_.bands.back(), c.band, c.hinge, share * before_}, wanted.free,
                             options_, layers_.unit);

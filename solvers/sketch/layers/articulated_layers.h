@@ -93,7 +93,9 @@ struct ArticulatedLayers {
 /// - the rim of the band before stands off by at most `gape` at rest.
 ///
 /// Where there is none, the last is dropped, and up to half of the visible length is taken, or else
-/// more; where there is none either, the angle is made smaller, in quarters down to 0.
+/// more; where there is none either, the angle is made smaller, in quarters; where no quarter of it
+/// is left, the band need not be hidden: on a strongly bent body of narrow bands its lower corners
+/// look out in front.
 ///
 /// @throws Error  as `drawn_mirror_planes` and `fit_arc_circles`; a layer that does not fit below
 ///                the one before it (names both strokes)

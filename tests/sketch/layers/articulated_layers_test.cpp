@@ -423,6 +423,23 @@ TEST(ArticulatedLayers, MeetATiltedFirstEdge) {
   for (const double share : {-1.0, 0.0, 1.0}) EXPECT_EQ(contacts(layers, options, share), 0);
 }
 
+// A strongly bent body of narrow layers, whose lower corners reach forward of the first layer.
+TEST(ArticulatedLayers, ChooseAnOverlapWhereCornersLookOut) {
+  SyntheticLayerOptions body;
+  body.arcs = 11;
+  body.radius = 0.676;
+  body.end_radius = 0.381;
+  body.rear_radius = 0.48;
+  body.length = 1.34;
+  body.bend_deg = 88;
+  body.first_tilt_deg = -8.7;
+  body.half_angle_deg = 111;
+  const LayerOptions options;
+  const ArticulatedLayers layers = known_layers(options, body);
+  EXPECT_EQ(layers.hinges.size(), 9U);
+  for (const double share : {-1.0, 0.0, 1.0}) EXPECT_EQ(contacts(layers, options, share), 0);
+}
+
 TEST(ArticulatedLayers, RefuseEdgesOfTheFirstLayerThatCross) {
   SyntheticLayerOptions body;
   body.first_tilt_deg = 45;
