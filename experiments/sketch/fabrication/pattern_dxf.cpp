@@ -204,8 +204,9 @@ void write_dxf_block(const SheetPiece& piece, const std::string& name, DxfWriter
   out.tag(3, name);
   for (const SheetLine& line : piece.lines) write_dxf_line(line, out);
   for (const SheetNotch& notch : piece.notches) out.mark("4", notch.cut);
-  const std::array<std::string, 3> system{"PIECE NAME: " + dxf_text(piece.label), "SIZE: ONE",
-                                          "QUANTITY: 1"};
+  std::vector<std::string> system{"PIECE NAME: " + dxf_text(piece.label), "SIZE: ONE",
+                                  "QUANTITY: 1"};
+  if (!piece.verdict.empty()) system.push_back("ANNOTATION: " + dxf_text(piece.verdict));
   for (std::size_t i = 0; i < system.size(); ++i) {
     const double below = -1.5 * kSystemText * static_cast<double>(i + 1);
     out.text("1", {0, below}, kSystemText, system[i]);
@@ -222,11 +223,13 @@ std::string dxf_drawing(const PatternSheet& sheet) {
   write_dxf_tables(sheet, out);
   out.begin_section("BLOCKS");
   for (std::size_t k = 0; k < sheet.pieces.size(); ++k) {
+    if (sheet.pieces[k].refused) continue;
     write_dxf_block(sheet.pieces[k], dxf_block_name(k + 1, sheet.pieces[k].label), out);
   }
   out.tag(0, "ENDSEC");
   out.begin_section("ENTITIES");
   for (std::size_t k = 0; k < sheet.pieces.size(); ++k) {
+    if (sheet.pieces[k].refused) continue;
     out.entity("INSERT", "1");
     out.tag(2, dxf_block_name(k + 1, sheet.pieces[k].label));
     out.point(10, sheet.pieces[k].place);

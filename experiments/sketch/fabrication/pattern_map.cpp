@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "experiments/sketch/fabrication/escaped_text.h"
 #include "experiments/sketch/fabrication/written_number.h"
+#include "experiments/sketch/pattern/sheet_text.h"
 #include "models/sketch/pattern/piece_border.h"
 
 namespace geoprior::sketch {
@@ -17,6 +19,7 @@ PatternJson json_edges(const PatternPiece& piece) {
   PatternJson edges = PatternJson::array();
   for (const PieceEdge& edge : piece.edges) {
     PatternJson one{{"points", edge.vertices}, {"length_mm", 1000 * edge_length(piece, edge)}};
+    if (!edge.name.empty()) one["name"] = edge.name;
     if (edge.partner_piece >= 0) {
       one["seam"] = edge.seam;
       one["sewn_to"] = {{"piece", edge.partner_piece}, {"edge", edge.partner_edge}};
@@ -35,6 +38,16 @@ PatternJson json_notches(const SheetPiece& drawn) {
                        {"arc_mm", 1000 * notch.arc}});
   }
   return notches;
+}
+
+/// In quotes, as RFC 4180 has them; on one line, whatever the name holds.
+std::string csv_field(const std::string& name) {
+  std::string field = "\"";
+  for (const char c : utf8_text(label_text(name, 80))) {
+    field += c;
+    if (c == '"') field += c;
+  }
+  return field + "\"";
 }
 
 PatternJson json_piece(const PatternPiece& piece, const SheetPiece& drawn) {
@@ -60,6 +73,7 @@ PatternJson json_piece(const PatternPiece& piece, const SheetPiece& drawn) {
                       {{"right", json_point(right)},
                        {"up", json_point(up)},
                        {"origin_mm", json_point(drawn.shift + drawn.place)}}}};
+  if (drawn.refused) result["refused"] = true;
   if (!piece.holes.empty()) result["holes"] = std::move(holes);
   return result;
 }
@@ -83,9 +97,11 @@ void require_map(const Pattern& pattern, const PatternSheet& sheet) {
 
 std::string pattern_map_csv(const Pattern& pattern, const PatternSheet& sheet) {
   require_map(pattern, sheet);
-  std::string out = "piece,point,surface_vertex,x_mm,y_mm,sheet_x_mm,sheet_y_mm\n";
+  std::string out = "piece,point,surface_vertex,x_mm,y_mm,sheet_x_mm,sheet_y_mm,name\n";
   for (std::size_t k = 0; k < pattern.pieces.size(); ++k) {
     const PatternPiece& piece = pattern.pieces[k];
+    if (sheet.pieces[k].refused) continue;
+    const std::string name = csv_field(piece.name);
     for (Eigen::Index i = 0; i < piece.points.rows(); ++i) {
       const Eigen::Vector2d p = piece.points.row(i).transpose();
       const Eigen::Vector2d on_sheet = sheet.pieces[k].own(p) + sheet.pieces[k].place;
@@ -94,7 +110,7 @@ std::string pattern_map_csv(const Pattern& pattern, const PatternSheet& sheet) {
       for (const double x : {1000 * p.x(), 1000 * p.y(), on_sheet.x(), on_sheet.y()}) {
         out.append(",").append(written_number(x));
       }
-      out += "\n";
+      out.append(",").append(name).append("\n");
     }
   }
   return out;

@@ -16,6 +16,12 @@ std::string pdf_point(const Eigen::Vector2d& p) {
   return written_number(p.x()) + " " + written_number(p.y()) + " ";
 }
 
+/// The operator after which a page counts in millimetres.
+std::string in_millimetres() {
+  const std::string scale = written_number(kPointsOfMillimetre, 12);
+  return scale + " 0 0 " + scale + " 0 0 cm\n";
+}
+
 /// The operators that draw one page, in millimetres.
 class PdfPageWriter {
  public:
@@ -23,8 +29,7 @@ class PdfPageWriter {
       : sheet_(sheet), page_(page), style_(style) {}
 
   std::string write() {
-    const std::string scale = written_number(kPointsOfMillimetre, 12);
-    out_ = scale + " 0 0 " + scale + " 0 0 cm\n1 j 1 J " + written_number(style_.line_mm) + " w\n";
+    out_ = in_millimetres() + "1 j 1 J " + written_number(style_.line_mm) + " w\n";
     out_ += "q\n" + pdf_point(page_.place) + pdf_point(page_.window.sizes()) + "re W n\n";
     for (const SheetLayer layer : used_layers(sheet_)) write_layer(layer);
     out_ += "Q\n";
@@ -119,24 +124,28 @@ class PdfFile {
 }  // namespace
 
 std::string pdf_document(const PatternSheet& sheet, std::span<const SheetPage> pages,
-                         const LayerStyle& style) {
+                         const LayerStyle& style, std::span<const PdfExtraPage> more) {
   if (pages.empty()) throw Error("no page", "PDF", "one or more");
   PdfFile file;
   // 1 catalogue, 2 pages, 3 font, 4 information, then a page and its contents in turn.
   file.object("<< /Type /Catalog /Pages 2 0 R /ViewerPreferences << /PrintScaling /None >> >>");
+  const std::size_t count = pages.size() + more.size();
   std::string kids;
-  for (std::size_t i = 0; i < pages.size(); ++i) kids += std::to_string(5 + 2 * i) + " 0 R ";
-  file.object("<< /Type /Pages /Kids [ " + kids + "] /Count " + std::to_string(pages.size()) +
-              " >>");
+  for (std::size_t i = 0; i < count; ++i) kids += std::to_string(5 + 2 * i) + " 0 R ";
+  file.object("<< /Type /Pages /Kids [ " + kids + "] /Count " + std::to_string(count) + " >>");
   file.object("<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>");
   file.object("<< /Title " + pdf_utf16_text(sheet.title) + " >>");
-  for (std::size_t i = 0; i < pages.size(); ++i) {
-    const Eigen::Vector2d size = kPointsOfMillimetre * pages[i].paper;
-    file.object("<< /Type /Page /Parent 2 0 R /MediaBox [ 0 0 " + pdf_point(size) +
-                "] /Resources << /Font << /F1 3 0 R >> >> /Contents " + std::to_string(6 + 2 * i) +
+  std::size_t number = 6;
+  const auto add = [&](const Eigen::Vector2d& paper, const std::string& content) {
+    file.object("<< /Type /Page /Parent 2 0 R /MediaBox [ 0 0 " +
+                pdf_point(kPointsOfMillimetre * paper) +
+                "] /Resources << /Font << /F1 3 0 R >> >> /Contents " + std::to_string(number) +
                 " 0 R >>");
-    file.stream(PdfPageWriter(sheet, pages[i], style).write());
-  }
+    file.stream(content);
+    number += 2;
+  };
+  for (const SheetPage& page : pages) add(page.paper, PdfPageWriter(sheet, page, style).write());
+  for (const PdfExtraPage& page : more) add(page.size, in_millimetres() + page.content);
   return file.finish(1, 4);
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTickApart = 2.5;     // the two ticks of a direction notch (mm)
 constexpr double kNumberHeight = 2.5;  // of notches (mm)
+constexpr double kVerdictHeight = 3;   // of its line (mm)
 constexpr double kLeastLegible = 1.2;  // height of text (mm)
 constexpr double kTextRoom = 1.15;     // other sans-serif fonts are wider than Helvetica
 constexpr double kLongestGrain = 200;  // mm
@@ -29,7 +30,7 @@ class PieceDrawing {
   PieceDrawing(const Pattern& pattern, int piece, const SheetOptions& options)
       : pattern_(pattern), piece_(pattern.pieces[piece]), index_(piece), options_(options) {}
 
-  SheetPiece draw(const std::vector<Notch>& notches) {
+  SheetPiece draw(const std::vector<Notch>& notches, const std::u32string& verdict) {
     draw_borders();
     for (int i = 0; i < std::ssize(piece_.folds); ++i) draw_fold(i);
     draw_placements();
@@ -40,6 +41,7 @@ class PieceDrawing {
     for (const SheetNotch& notch : drawing_.notches) write_number(notch);
     write_name();
     draw_grain();
+    write_verdict(verdict);
     return std::move(drawing_);
   }
 
@@ -225,6 +227,19 @@ class PieceDrawing {
     }
   }
 
+  /// In the widest room that is left, small: it is for whoever sews, not for whoever cuts.
+  void write_verdict(const std::u32string& verdict) {
+    drawing_.verdict = verdict;
+    if (verdict.empty()) return;
+    const double width = kTextRoom * helvetica_width(verdict) + 0.6, height = 1.6;
+    const auto box = largest_clear_box(free_, obstacles_, width / height);
+    if (box.isEmpty()) return;
+    const double h = std::min(kVerdictHeight, box.sizes().y() / height);
+    if (h < kLeastLegible) return;
+    const Eigen::Vector2d m = box.center(), half = h / 2 * Eigen::Vector2d(width, height);
+    add_text({Eigen::Vector2d(m - half), Eigen::Vector2d(m + half)}, m, h, verdict);
+  }
+
   /// An upright arrow in the tallest room that is left.
   void draw_grain() {
     for (const double aspect : {0.2, 0.4, 0.8}) {
@@ -256,8 +271,8 @@ class PieceDrawing {
 }  // namespace
 
 SheetPiece draw_piece(const Pattern& pattern, int piece, const std::vector<Notch>& notches,
-                      const SheetOptions& options) {
-  return PieceDrawing(pattern, piece, options).draw(notches);
+                      const SheetOptions& options, const std::u32string& verdict) {
+  return PieceDrawing(pattern, piece, options).draw(notches, verdict);
 }
 
 }  // namespace geoprior::sketch

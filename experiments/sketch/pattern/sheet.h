@@ -87,6 +87,8 @@ struct SheetPiece {
   Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();  ///< of the pattern (m): own coordinates …
   Eigen::Vector2d shift{0, 0};                         ///< … are 1000 turn · p + shift
   Eigen::Vector2d place{0, 0};                         ///< of its origin on the sheet
+  std::u32string verdict = {};  ///< written below the name (piece_verdict.h); none when empty
+  bool refused = false;         ///< it is not to be cut: nothing of it is drawn
 
   /// A point of the pattern (m) in the piece's own coordinates (mm).
   [[nodiscard]] Eigen::Vector2d own(const Eigen::Vector2d& p) const {

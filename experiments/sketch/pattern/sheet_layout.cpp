@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/error.h"
 #include "experiments/sketch/pattern/notches.h"
 #include "experiments/sketch/pattern/piece_drawing.h"
 #include "experiments/sketch/pattern/sheet_text.h"
@@ -34,6 +35,7 @@ void place_sheet_pieces(PatternSheet& sheet, const SheetOptions& options) {
   const double gap = options.gap_mm;
   double area = 0, widest = kScaleBar + kBarText;
   for (const SheetPiece& piece : sheet.pieces) {
+    if (piece.refused) continue;
     area += (piece.size.x() + gap) * (piece.size.y() + gap);
     widest = std::max(widest, piece.size.x());
   }
@@ -46,6 +48,7 @@ void place_sheet_pieces(PatternSheet& sheet, const SheetOptions& options) {
   double x = gap, y = kSheetFooter + 2 * gap, highest = 0, right = gap + kScaleBar + kBarText;
   for (const std::size_t k : order) {
     SheetPiece& piece = sheet.pieces[k];
+    if (piece.refused) continue;
     if (x > gap && x + piece.size.x() > gap + row) {
       y += highest + gap;
       x = gap;
@@ -79,6 +82,26 @@ void write_sheet_line(PatternSheet& sheet, const Eigen::Vector2d& left, double h
   sheet.texts.push_back({left, h, text, TextAnchor::left});
 }
 
+std::string count_of_pieces(const PatternSheet& sheet) {
+  const auto n = std::ssize(sheet.pieces);
+  const auto refused = std::count_if(sheet.pieces.begin(), sheet.pieces.end(),
+                                     [](const SheetPiece& piece) { return piece.refused; });
+  const std::string all = std::to_string(n) + (n == 1 ? " piece" : " pieces");
+  return refused == 0 ? all : std::to_string(n - refused) + " of " + all;
+}
+
+/// Places what is drawn, and writes and draws what is below it.
+void finish_sheet(PatternSheet& sheet, const SheetOptions& options) {
+  place_sheet_pieces(sheet, options);
+  const Eigen::Vector2d corner(options.gap_mm, options.gap_mm);
+  draw_scale_bar(sheet, corner);
+  write_sheet_line(sheet, corner + Eigen::Vector2d(0, 15), kSheetTitle, sheet.title);
+  write_sheet_line(sheet, corner + Eigen::Vector2d(0, 8), kSheetNote,
+                   widened_ascii("Seam allowance " + millimetres_text(options.allowance_mm) +
+                                 ", hem " + millimetres_text(options.hem_mm) + ", " +
+                                 count_of_pieces(sheet) + ", true scale"));
+}
+
 }  // namespace
 
 PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) {
@@ -90,16 +113,34 @@ PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) 
   for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
     sheet.pieces.push_back(draw_piece(pattern, k, notches, options));
   }
-  place_sheet_pieces(sheet, options);
-  const Eigen::Vector2d corner(options.gap_mm, options.gap_mm);
-  draw_scale_bar(sheet, corner);
-  write_sheet_line(sheet, corner + Eigen::Vector2d(0, 15), kSheetTitle, sheet.title);
-  const std::size_t n = pattern.pieces.size();
-  write_sheet_line(
-      sheet, corner + Eigen::Vector2d(0, 8), kSheetNote,
-      widened_ascii("Seam allowance " + millimetres_text(options.allowance_mm) + ", hem " +
-                    millimetres_text(options.hem_mm) + ", " + std::to_string(n) +
-                    (n == 1 ? " piece" : " pieces") + ", true scale"));
+  finish_sheet(sheet, options);
+  return sheet;
+}
+
+PatternSheet judged_sheet(const Pattern& pattern, const SheetOptions& options, bool force,
+                          std::vector<PieceVerdict>& verdicts) {
+  require_drawable(pattern);
+  const std::vector<Notch> notches =
+      paired_notches(pattern, {.spacing = options.notch_spacing_mm / 1000});
+  PatternSheet sheet;
+  sheet.title = label_text(options.title, 80);
+  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
+    PieceVerdict& verdict = verdicts[k];
+    if (force) verdict.refused.clear();
+    SheetPiece drawn;
+    if (verdict.refused.empty()) {
+      try {
+        drawn = draw_piece(pattern, k, notches, options, label_text(short_verdict(verdict), 80));
+      } catch (const Error& error) {
+        verdict.refused = std::string("cannot be drawn: ") + error.what();
+      }
+    }
+    drawn.refused = !verdict.refused.empty();
+    drawn.name = pattern.pieces[k].name;
+    drawn.label = label_text(drawn.name, 40);
+    sheet.pieces.push_back(std::move(drawn));
+  }
+  finish_sheet(sheet, options);
   return sheet;
 }
 

@@ -55,13 +55,12 @@ void load_known(const SketchSceneOptions& o, std::uint64_t seed, SketchScene& sc
   scene.input.drawing.views = {scene.truth->view};
 }
 
-/// The files of a pattern; of one that cannot be cut out (a baseline's may overlap itself) a text
-/// that says why.
+/// The files of a pattern; of one that is none a text that says why.
 std::vector<Artifact> pattern_artifacts(const Pattern& pattern, const Eigen::MatrixX3d& surface,
                                         const FabricationOptions& options) {
   std::vector<Artifact> artifacts;
   try {
-    for (const FabricationFile& file : fabrication_files(pattern, options))
+    for (const FabricationFile& file : judged_fabrication_files(pattern, surface, options))
       artifacts.push_back(artifact_of(file.name, file.bytes));
     if (options.cloth) {
       for (const FabricationFile& file : cloth_files(pattern, surface))

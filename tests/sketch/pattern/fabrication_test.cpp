@@ -353,7 +353,7 @@ TEST(PatternMap, FindsEveryPointOnTheSheet) {
   std::istringstream csv(pattern_map_csv(pattern, sheet));
   std::string line;
   std::getline(csv, line);
-  EXPECT_EQ(line, "piece,point,surface_vertex,x_mm,y_mm,sheet_x_mm,sheet_y_mm");
+  EXPECT_EQ(line, "piece,point,surface_vertex,x_mm,y_mm,sheet_x_mm,sheet_y_mm,name");
   std::map<int, int> occurrences;
   int count = 0;
   for (; std::getline(csv, line); ++count) {
