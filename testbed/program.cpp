@@ -172,12 +172,18 @@ std::string flag_of(std::string key) {
 void add_topic_command(CommandLine& line, TopicCommandRequest& request) {
   const TopicCommand& about = *request.command;
   CLI::App* command = add_command(line, about.name, about.summary);
+  command->footer("");  // its help is its flags
   command->add_option(about.input, request.input, about.input_meaning)->required();
   const auto options = about.default_options();
   for (const OptionRow& row : list_options([&](OptionVisitor& v) { options->visit(v); })) {
     const bool is_second = row.key == about.second_argument;
     const std::string names = flag_of(row.key) + (is_second ? "," + row.key : "");
-    command->add_option(names, request.options[row.key], row.doc)->type_name(row.type);
+    std::string& written = request.options[row.key];
+    if (row.type == "boolean") {
+      command->add_flag(names, written, row.doc);
+    } else {
+      command->add_option(names, written, row.doc)->type_name(row.type);
+    }
   }
 }
 

@@ -199,6 +199,7 @@ class DiagnosticTable {
 struct CommandText {
   std::string text;
   std::vector<std::string> notices;
+  bool fell_short = false;  ///< there is a result, but not of all that was asked for: exit code 1
 };
 
 /// A command of the program that a topic brings: `geoprior <name> <input> [--option …]`, with a

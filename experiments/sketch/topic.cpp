@@ -2,6 +2,7 @@
 
 #include "experiments/sketch/drawing/stroke_kinds.h"
 #include "experiments/sketch/scene/scene.h"
+#include "experiments/sketch/sketch_command.h"
 
 namespace geoprior::sketch {
 
@@ -19,6 +20,7 @@ Topic make_topic() {
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.files = {drawing_keys()};
+  topic.commands = {sketch_command()};
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};
   topic.view.shading = FigureView::Shading::flat;

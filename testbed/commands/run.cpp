@@ -58,6 +58,21 @@ int report_stop(const CommandContext& context, const RunRequest& request, const 
   return wrong_use;
 }
 
+/// Where the files are that methods left beside their frames (a pattern, sounds, a model): a line a
+/// variant.
+void say_artifacts(const ExecuteResult& result) {
+  constexpr int kMost = 6;
+  int lines = 0;
+  for (const CaseRecord& of : result.record.cases) {
+    for (const VariantRecord& variant : of.variants) {
+      if (variant.artifacts.empty() || ++lines > kMost) continue;
+      const fs::path folder = result.folder / variant.artifacts.front().name;
+      say("files    " + folder.parent_path().string());
+    }
+  }
+  if (lines > kMost) say("files    … and " + std::to_string(lines - kMost) + " more folders");
+}
+
 /// Claims and where to look; the table of all numbers, which summary.md has as well, when it is
 /// asked for or there is no summary.md.
 void say_outcome(const ExecuteResult& result, const Pictures& pictures, bool table) {
@@ -73,6 +88,7 @@ void say_outcome(const ExecuteResult& result, const Pictures& pictures, bool tab
   say("numbers  " + pictures.summary.value_or(result.folder / "run.h5").string());
   if (pictures.figure) say("picture  " + pictures.figure->string());
   for (const auto& drawn : pictures.spectrograms) say("sound    " + drawn.string());
+  say_artifacts(result);
   if (pictures.report) say("report   " + pictures.report->string());
 }
 

@@ -43,7 +43,7 @@ int topic_command(const CommandContext& context, const TopicCommandRequest& requ
   } else {
     print_out(result.text);
   }
-  return done;
+  return result.fell_short ? fell_short : done;
 }
 
 }  // namespace geoprior

@@ -31,6 +31,7 @@ class DrawingReader {
     result_.drawing.name = document_.name;
     result_.warnings = document_.notes;
     result_.inputs.push_back(file_);
+    result_.page = {document_.width_m, document_.height_m};
     layers_ = find_view_layers(document_, result_.warnings);
     std::map<ViewKind, std::vector<DrawnStroke>> lines;
     for (const SvgShape& shape : document_.shapes) {

@@ -23,6 +23,7 @@ struct DrawingFile {
   Drawing drawing;
   std::vector<std::string> warnings;          ///< what was left out or assumed
   std::vector<std::filesystem::path> inputs;  ///< the file, and the pictures beside it
+  Eigen::Vector2d page{0, 0};                 ///< its size (m); 0 where the file does not say it
 };
 
 /// Most strokes of a view.

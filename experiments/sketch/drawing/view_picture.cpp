@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "testbed/formats/input_file.h"
 #include "testbed/formats/svg/viewport.h"
+#include "testbed/runner/number_text.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -97,6 +98,37 @@ Picture view_picture(const SvgImage& image, const std::string& where) {
   picture.origin = image.origin + Eigen::Vector2d(upper_left.x(), height - lower_right.y());
   picture.size = lower_right - upper_left;
   return picture;
+}
+
+void replace_picture(Drawing& drawing, const std::filesystem::path& file,
+                     const Eigen::Vector2d& page) {
+  const std::optional<Eigen::Vector2i> pixels = picture_size(head_of_picture(file));
+  if (!pixels) throw Error("the photograph is neither PNG nor JPEG", file.string());
+  for (View& view : drawing.views) {
+    if (view.kind != ViewKind::photo) {
+      throw Error("a photograph goes with a drawing of one view, and " + drawing.name +
+                      " has view:" + view_name(view.kind),
+                  file.string(), "a layer view:photo");
+    }
+    const bool has_own = view.picture.size != Eigen::Vector2d::Zero();
+    const Eigen::Vector2d size = has_own ? view.picture.size : page;
+    const std::string place = has_own ? "its picture" : "its page";
+    if (!(size.minCoeff() > 0)) {
+      throw Error(
+          "the drawing says no size of its page, nor has it a picture: where the "
+          "photograph lies is not known",
+          drawing.name, "width and height of the page");
+    }
+    constexpr double kAlike = 0.01;
+    const double wide = size.x() / size.y(), seen = 1.0 * pixels->x() / pixels->y();
+    if (std::abs(wide / seen - 1) > kAlike) {
+      throw Error("the photograph has " + std::to_string(pixels->x()) + " x " +
+                      std::to_string(pixels->y()) + " pixels, and does not fit the drawing: " +
+                      place + " is " + rounded_text(wide) + " times as wide as high",
+                  file.string(), "the picture that was traced over");
+    }
+    view.picture = {file.string(), {}, has_own ? view.picture.origin : Eigen::Vector2d(0, 0), size};
+  }
 }
 
 }  // namespace geoprior::sketch

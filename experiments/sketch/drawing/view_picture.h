@@ -27,4 +27,13 @@ std::optional<Eigen::Vector2i> picture_size(std::string_view bytes);
 ///                mirrored, or cut off by its box
 Picture view_picture(const SvgImage& image, const std::string& where);
 
+/// Gives the one view of a drawing another picture: in the place of its own, or over the whole page
+/// where it has none.
+/// @param page    size of it (m); 0: unknown
+/// @throws Error  naming the file: the drawing has several views, the file is neither PNG nor JPEG,
+///                its proportions are not those of the place (by more than 1 percent), or there is
+///                no place
+void replace_picture(Drawing& drawing, const std::filesystem::path& file,
+                     const Eigen::Vector2d& page);
+
 }  // namespace geoprior::sketch

@@ -42,6 +42,11 @@ void load_drawing(const SketchSceneOptions& o, const std::filesystem::path& fold
   scene.input.drawing = std::move(read.drawing);
   scene.load_warnings = std::move(read.warnings);
   scene.input_files = std::move(read.inputs);
+  if (!o.photo.empty()) {
+    const std::filesystem::path photo = find_file(o.photo, folder, "data", "scene.photo");
+    replace_picture(scene.input.drawing, photo, read.page);
+    scene.input_files.push_back(photo);
+  }
   if (scene.input.drawing.find(ViewKind::photo) != nullptr) return;
   scene.aligned = align_views(scene.input.drawing, o.align);
   for (const OutlinedView& view : outlined_views(scene.aligned))
@@ -139,6 +144,10 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
   v.value("drawing", o.drawing, {.doc = "SVG file with the annotated views", .named = Named::file});
+  v.value("photo", o.photo,
+          {.doc = "picture (PNG, JPEG) that the one view was traced over: in the place of the "
+                  "drawing's own, or over its whole page",
+           .named = Named::file});
   v.value(
       "surface", o.surface,
       {.doc = "mesh file in place of a drawing, for methods that need none", .named = Named::file});

@@ -29,6 +29,7 @@ namespace geoprior::sketch {
 /// its place.
 struct SketchSceneOptions {
   std::string drawing;
+  std::string photo;
   std::string surface;
   double surface_scale = 1;
   std::optional<SyntheticViewOptions> synthetic;
