@@ -19,7 +19,7 @@
 #include "experiments/sketch/topic.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/execute.h"
-#include "testbed/runner/names.h"
+#include "testbed/runner/number_text.h"
 #include "testbed/runner/opened_run.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/spec/spec.h"
@@ -109,10 +109,15 @@ DrawnExperiment drawn_experiment(const ReadSketch& read, const SketchCommandOpti
   return experiment;
 }
 
+const VariantRecord& only_variant(const ExecuteResult& result) {
+  return result.record.cases.front().variants.front();
+}
+
 /// Runs the experiment as if its file were in the folder already.
 ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFolder& folder) {
   const std::vector<Topic> topics{make_topic()};
   const Experiment experiment = load_recorded_experiment(text, file.string(), file, topics);
+  fs::remove_all(folder.unfinished() / "run");
   ExecuteRequest request;
   request.out = folder.unfinished() / "run";
   request.timing = false;
@@ -123,9 +128,46 @@ ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFol
   };
   ExecuteResult result = execute(experiment, topics, request);
   if (result.stopped) throw Stopped();
-  const VariantRecord& variant = result.record.cases.front().variants.front();
-  if (variant.status != "done") throw Error(variant.error);
   return result;
+}
+
+bool is_refused(const VariantRecord& variant) {
+  return variant.status != "done" ||
+         std::any_of(variant.artifacts.begin(), variant.artifacts.end(), [](const auto& stored) {
+           return fs::path(stored.name).filename() == "pattern-refused.txt";
+         });
+}
+
+/// A run with the experiment that it is of.
+struct DrawnRun {
+  std::string text;
+  ExecuteResult result;
+  std::optional<double> snap;  ///< what the experiment says, and why, is a notice
+};
+
+/// The run of a drawing. Borders of one view whose ends are joined too far make pieces that nobody
+/// can cut: they are joined less far then, by halves, as long as that is of no use.
+/// @throws Error  where there is no result
+DrawnRun run_sketch(DrawnExperiment experiment, const fs::path& file, ResultFolder& folder) {
+  constexpr std::array<double, 2> kNearer{0.01, 0.005};
+  const auto run_with = [&](const std::optional<double>& snap) {
+    experiment.snap = snap;
+    std::string text = experiment_text(experiment);
+    ExecuteResult result = run_drawn(text, file, folder);
+    return DrawnRun{std::move(text), std::move(result), snap};
+  };
+  DrawnRun run = run_with({});
+  if (experiment.kind == DrawnKind::one_view && is_refused(only_variant(run.result))) {
+    bool helps = false;
+    for (std::size_t i = 0; i < kNearer.size() && !helps; ++i) {
+      run = run_with(kNearer[i]);
+      helps = !is_refused(only_variant(run.result));
+    }
+    if (!helps) run = run_with({});
+  }
+  const VariantRecord& variant = only_variant(run.result);
+  if (variant.status != "done") throw Error(variant.error);
+  return run;
 }
 
 /// Files of the run that its user looks for come up beside it.
@@ -192,33 +234,48 @@ std::string word_of(const std::string& file) {
   return "";
 }
 
+/// The experiment, what has a word in the order of their table, and the rest.
 std::string listing(const fs::path& folder, const fs::path& experiment) {
   constexpr std::size_t kNameWidth = 24;
-  std::string text = folder.string() + "\n";
+  std::vector<std::string> names{experiment.string()};
+  for (const auto& [name, word] : kFileWords) names.emplace_back(name);
+  const std::size_t known = names.size();
   for (const fs::path& entry : sorted_entries(folder)) {
-    if (is_temporary_file(entry)) continue;
-    std::string name = entry.filename().string();
-    const std::string word = name == experiment
-                                 ? "the experiment: edit it, then geoprior run " + entry.string()
-                                 : word_of(name);
-    if (!word.empty() && name.size() < kNameWidth) name.resize(kNameWidth, ' ');
-    text += "  " + name + word + "\n";
+    const std::string name = entry.filename().string();
+    if (is_temporary_file(entry) || std::count(names.begin(), names.begin() + known, name) > 0)
+      continue;
+    names.push_back(name);
+  }
+  std::string text = folder.string() + "\n";
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    if (!fs::exists(folder / name, ignored)) continue;
+    const std::string word = name == experiment ? "the experiment: edit it, then geoprior run " +
+                                                      (folder / name).string()
+                                                : word_of(name);
+    const std::size_t gap = name.size() < kNameWidth ? kNameWidth - name.size() : 1;
+    text += "  " + name + (word.empty() ? "" : std::string(gap, ' ') + word) + "\n";
   }
   return text;
 }
 
-CommandText result_text(const ReadSketch& read, const fs::path& folder, const fs::path& file) {
+CommandText result_text(const ReadSketch& read, const fs::path& folder, const fs::path& file,
+                        bool force) {
   CommandText out;
   const std::string verdicts = text_in(folder, "pattern-verdict.txt");
   const std::string refused = text_in(folder, "pattern-refused.txt");
   out.text = printable(read.drawing.filename().string() + ": " +
                        drawn_kind_text(read.scene->input.drawing) + "\n" + listing(folder, file) +
                        verdicts);
-  if (!refused.empty()) {
-    out.fell_short = true;
-    out.notices.push_back(verdicts.empty() ? "there is no pattern to cut: " + refused
-                                           : "pieces are refused, and not in the files to cut by "
-                                             "(--force writes them all the same)");
+  if (refused.empty()) return out;
+  out.fell_short = verdicts.empty() || !force;
+  if (verdicts.empty()) {
+    out.notices.push_back("there is no pattern to cut: " + refused);
+  } else if (force) {
+    out.notices.push_back("pieces that are refused are among the files to cut by: --force");
+  } else {
+    out.notices.push_back(
+        "pieces are refused, and not in the files to cut by (--force writes them all the same)");
   }
   return out;
 }
@@ -229,21 +286,27 @@ CommandText sketch(const std::string& input, const SketchCommandOptions& options
   install_stop_handler();
   ResultFolder folder(options.out ? fs::path(*options.out) : unused_result_folder(read.drawing));
   const fs::path file = read.drawing.stem().string() + ".toml";
-  const std::string text =
-      experiment_text(drawn_experiment(read, options, folder.path(), photo.has_value()));
-  const ExecuteResult result = run_drawn(text, folder.path() / file, folder);
-  const OpenedRun run(result.folder, result.record);
-  const VariantRecord& variant = result.record.cases.front().variants.front();
+  const DrawnRun drawn =
+      run_sketch(drawn_experiment(read, options, folder.path(), photo.has_value()),
+                 folder.path() / file, folder);
+  const OpenedRun run(drawn.result.folder, drawn.result.record);
+  const VariantRecord& variant = only_variant(drawn.result);
   const fs::path& made = folder.unfinished();
   copy_files(run, variant, made);
   if (const std::optional<Part> surface = last_part(run, variant, "surface"))
     write_file_atomically(made / "surface.obj",
                           part_to_obj(*surface, read.drawing.filename().string()));
   draw_picture(read, run, variant, std::move(photo), made);
-  write_file_atomically(made / file, text);
+  write_file_atomically(made / file, drawn.text);
   throw_if_stopped();
   folder.commit(file);
-  return result_text(read, folder.path(), file);
+  CommandText text = result_text(read, folder.path(), file, options.force);
+  if (drawn.snap) {
+    text.notices.push_back("ends of borders are joined within " + rounded_text(100 * *drawn.snap) +
+                           " % of the drawing's diagonal: joined as far as usual, they make pieces "
+                           "that cannot be cut");
+  }
+  return text;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ Topic make_topic() {
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};
   topic.view.shading = FigureView::Shading::flat;
-  topic.view.overlays = {"strokes", "gaps"};
+  topic.view.overlays = {"strokes", "rims", "gaps"};
   return topic;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "experiments/sketch/drawing/stroke_kinds.h"
+#include "testbed/runner/number_text.h"
 #include "testbed/runner/options/json.h"
 
 namespace geoprior::sketch {
@@ -19,9 +20,13 @@ constexpr const char* kSeveralViewsOptions =
     R"(# options = { suggest = { apply = 2 } }   # two seams are suggested and cut where the pattern is strained
 )";
 
-constexpr const char* kOneViewOptions =
-    R"(# options = { curves = { snap = 0.01 } }  # ends of borders farther apart than this are not joined
-)";
+/// Ends of borders that are farther apart are not joined.
+std::string one_view_options(const std::optional<double>& snap) {
+  constexpr double kProposed = 0.01;
+  return std::string(snap ? "" : "# ") +
+         "options = { curves = { snap = " + number_text(snap.value_or(kProposed)) +
+         " } }  # ends of borders are joined within so much of the drawing's diagonal\n";
+}
 
 /// Drawing over surface over pieces; the classes are those of the strokes' kinds.
 std::string stroke_classes() {
@@ -107,7 +112,7 @@ std::string experiment_text(const DrawnExperiment& experiment) {
   text += "\n[[variant]]\nname   = " + toml_string(kDrawnVariant) +
           "\nmethod = " + toml_string(method_name(experiment.kind)) + "\n";
   if (experiment.kind == DrawnKind::several_views) text += kSeveralViewsOptions;
-  if (experiment.kind == DrawnKind::one_view) text += kOneViewOptions;
+  if (experiment.kind == DrawnKind::one_view) text += one_view_options(experiment.snap);
   return text + view_text(experiment.kind);
 }
 

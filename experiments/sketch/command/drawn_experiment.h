@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "models/sketch/drawing/drawing.h"
@@ -29,6 +30,9 @@ struct DrawnExperiment {
   DrawnKind kind = DrawnKind::several_views;
   bool textured = false;  ///< the photograph's colours are carried over
   bool force = false;     ///< pieces are written to be cut although they are refused
+  /// Of one view: within which share of the drawing's diagonal ends of borders are joined; absent:
+  /// the method's.
+  std::optional<double> snap = {};
 };
 
 /// The method's variant in the experiment.
