@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/sketch/command/chosen_snap.h"
 #include "experiments/sketch/command/drawn_experiment.h"
 #include "experiments/sketch/command/overview_picture.h"
 #include "experiments/sketch/command/result_folder.h"
@@ -117,7 +118,6 @@ const VariantRecord& only_variant(const ExecuteResult& result) {
 ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFolder& folder) {
   const std::vector<Topic> topics{make_topic()};
   const Experiment experiment = load_recorded_experiment(text, file.string(), file, topics);
-  fs::remove_all(folder.unfinished() / "run");
   ExecuteRequest request;
   request.out = folder.unfinished() / "run";
   request.timing = false;
@@ -128,46 +128,8 @@ ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFol
   };
   ExecuteResult result = execute(experiment, topics, request);
   if (result.stopped) throw Stopped();
+  if (only_variant(result).status != "done") throw Error(only_variant(result).error);
   return result;
-}
-
-bool is_refused(const VariantRecord& variant) {
-  return variant.status != "done" ||
-         std::any_of(variant.artifacts.begin(), variant.artifacts.end(), [](const auto& stored) {
-           return fs::path(stored.name).filename() == "pattern-refused.txt";
-         });
-}
-
-/// A run with the experiment that it is of.
-struct DrawnRun {
-  std::string text;
-  ExecuteResult result;
-  std::optional<double> snap;  ///< what the experiment says, and why, is a notice
-};
-
-/// The run of a drawing. Borders of one view whose ends are joined too far make pieces that nobody
-/// can cut: they are joined less far then, by halves, as long as that is of no use.
-/// @throws Error  where there is no result
-DrawnRun run_sketch(DrawnExperiment experiment, const fs::path& file, ResultFolder& folder) {
-  constexpr std::array<double, 2> kNearer{0.01, 0.005};
-  const auto run_with = [&](const std::optional<double>& snap) {
-    experiment.snap = snap;
-    std::string text = experiment_text(experiment);
-    ExecuteResult result = run_drawn(text, file, folder);
-    return DrawnRun{std::move(text), std::move(result), snap};
-  };
-  DrawnRun run = run_with({});
-  if (experiment.kind == DrawnKind::one_view && is_refused(only_variant(run.result))) {
-    bool helps = false;
-    for (std::size_t i = 0; i < kNearer.size() && !helps; ++i) {
-      run = run_with(kNearer[i]);
-      helps = !is_refused(only_variant(run.result));
-    }
-    if (!helps) run = run_with({});
-  }
-  const VariantRecord& variant = only_variant(run.result);
-  if (variant.status != "done") throw Error(variant.error);
-  return run;
 }
 
 /// Files of the run that its user looks for come up beside it.
@@ -286,27 +248,29 @@ CommandText sketch(const std::string& input, const SketchCommandOptions& options
   install_stop_handler();
   ResultFolder folder(options.out ? fs::path(*options.out) : unused_result_folder(read.drawing));
   const fs::path file = read.drawing.stem().string() + ".toml";
-  const DrawnRun drawn =
-      run_sketch(drawn_experiment(read, options, folder.path(), photo.has_value()),
-                 folder.path() / file, folder);
-  const OpenedRun run(drawn.result.folder, drawn.result.record);
-  const VariantRecord& variant = only_variant(drawn.result);
+  DrawnExperiment experiment = drawn_experiment(read, options, folder.path(), photo.has_value());
+  if (experiment.kind == DrawnKind::one_view) experiment.snap = chosen_snap(read.scene->photo());
+  const std::string text = experiment_text(experiment);
+  const ExecuteResult result = run_drawn(text, folder.path() / file, folder);
+  const OpenedRun run(result.folder, result.record);
+  const VariantRecord& variant = only_variant(result);
   const fs::path& made = folder.unfinished();
   copy_files(run, variant, made);
   if (const std::optional<Part> surface = last_part(run, variant, "surface"))
     write_file_atomically(made / "surface.obj",
                           part_to_obj(*surface, read.drawing.filename().string()));
   draw_picture(read, run, variant, std::move(photo), made);
-  write_file_atomically(made / file, drawn.text);
+  write_file_atomically(made / file, text);
   throw_if_stopped();
   folder.commit(file);
-  CommandText text = result_text(read, folder.path(), file, options.force);
-  if (drawn.snap) {
-    text.notices.push_back("ends of borders are joined within " + rounded_text(100 * *drawn.snap) +
-                           " % of the drawing's diagonal: joined as far as usual, they make pieces "
-                           "that cannot be cut");
+  CommandText out = result_text(read, folder.path(), file, options.force);
+  if (experiment.snap) {
+    out.notices.push_back("ends of borders are joined within " +
+                          rounded_text(100 * *experiment.snap) +
+                          " % of the drawing's diagonal: joined as far as usual, they pull the "
+                          "borders away from where they were drawn");
   }
-  return text;
+  return out;
 }
 
 }  // namespace

@@ -156,7 +156,9 @@ void draw_drawing(Canvas& picture, const Overview& overview, const std::vector<K
 
 void draw_surface(Canvas& picture, const Overview& overview, const std::vector<KindLines>& lines) {
   FigureView view;
+  // Of one view little more is known than what it shows.
   view.direction = {0.8, 0.5, 1};
+  if (overview.drawing.find(ViewKind::photo) != nullptr) view.direction = {0.45, 0.25, 1};
   view.up = {0, 1, 0};
   const PlacedPanel panel = place_panel(fit_window({&overview.surface}, view), 1);
   head_panel(picture, 1, "The surface");
