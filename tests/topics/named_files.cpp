@@ -276,6 +276,20 @@ void add_skinning_and_sketch(std::map<std::string, NamedFile>& files) {
                              "drawing = \"mine.svg\"\nhull = { triangles = 300 }\n",
                              {"mine.svg"},
                              "visual-hull"};
+  files["sketch photo"] = {
+      [](const fs::path& folder, bool changed) {
+        const fs::path drawings = GEOPRIOR_SOURCE_DIR "/experiments/sketch";
+        for (const char* name : {"bag.svg", "bag.png"}) {
+          fs::copy_file(drawings / name, folder / name, fs::copy_options::overwrite_existing);
+        }
+        fs::copy_file(drawings / (changed ? "tent.png" : "bag.png"), folder / "mine.png",
+                      fs::copy_options::overwrite_existing);
+      },
+      "drawing = \"bag.svg\"\nphoto = \"mine.png\"\n",
+      {"mine.png"},
+      "one-view",
+      {},
+      "does not fit the drawing"};
   files["sketch surface"] = {
       writes("mine.obj", [](bool changed) { return plate(1, changed ? 0.3 : 0.2, 8); }),
       "surface = \"mine.obj\"\n",
