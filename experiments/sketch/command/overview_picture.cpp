@@ -198,7 +198,7 @@ ColorScale percent_scale(const Part& part) {
   return scale;
 }
 
-Part outlines(const Part& pattern) {
+Part piece_outlines(const Part& pattern) {
   Part part;
   part.kind = Part::Kind::lines;
   part.points = pattern.points;
@@ -239,7 +239,7 @@ void draw_pieces(Canvas& picture, const Overview& overview) {
   view.direction = {0, 0, 1};
   view.up = {0, 1, 0};
   const PlacedPanel panel = place_panel(fit_window({&pattern}, view), 2);
-  const Part border = outlines(pattern);
+  const Part border = piece_outlines(pattern);
   PanelStyle style;
   style.scale = percent_scale(pattern);
   style.flat = true;

@@ -1,0 +1,35 @@
+// How far ends of borders are joined, by what the drawing itself says.
+
+#include "experiments/sketch/command/chosen_snap.h"
+
+#include <gtest/gtest.h>
+
+#include "experiments/sketch/drawing/drawing_file.h"
+#include "solvers/sketch/one_view.h"
+
+namespace geoprior::sketch {
+namespace {
+
+View one_view_of(const char* name) {
+  const Drawing drawing =
+      read_drawing(std::string(GEOPRIOR_SOURCE_DIR "/experiments/sketch/") + name, {}).drawing;
+  return *drawing.find(ViewKind::photo);
+}
+
+// The strap of the bag and the strips of the helmet end nearer to other borders than 2 percent of
+// the diagonal, which they do not belong to.
+TEST(ChosenSnap, IsLessWhereStrangersWouldBeJoined) {
+  const double usual = OneViewOptions().curves.snap;
+  for (const char* name : {"bag.svg", "helmet.svg"}) {
+    const std::optional<double> snap = chosen_snap(one_view_of(name));
+    ASSERT_TRUE(snap) << name;
+    EXPECT_LT(*snap, usual) << name;
+  }
+}
+
+TEST(ChosenSnap, IsTheUsualOneWhereItJoinsWhatBelongsTogether) {
+  EXPECT_FALSE(chosen_snap(one_view_of("tent.svg")));
+}
+
+}  // namespace
+}  // namespace geoprior::sketch
