@@ -44,6 +44,7 @@ std::string view_text(DrawnKind kind) {
            "direction  = [0.3, 0.35, 1.0]\n";
   }
   text += "color_by = \"stretch\"\nlabel    = \"Surface\"\n";
+  if (kind == DrawnKind::one_view) text += "direction = [0.45, 0.25, 1.0]\n";
   text +=
       "\n[figure_view.above]\npart     = \"drawing\"\nlabel    = \"Drawing\"\n"
       "color_by = \"kind\"\nclasses  = " +
