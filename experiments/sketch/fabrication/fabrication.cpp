@@ -41,8 +41,7 @@ void add_worst_seam(const Pattern& pattern, const Eigen::MatrixX3d& surface,
     if (!verdicts[k].is_strained() && verdicts[k].refused.empty()) continue;
     if (worst == verdicts.size() || lost(k) > lost(worst)) worst = k;
   }
-  if (worst < verdicts.size())
-    verdicts[worst].seam = added_seam(pattern.pieces[worst], surface);
+  if (worst < verdicts.size()) verdicts[worst].seam = added_seam(pattern.pieces[worst], surface);
 }
 
 }  // namespace

@@ -137,10 +137,9 @@ std::string pdf_document(const PatternSheet& sheet, std::span<const SheetPage> p
   file.object("<< /Title " + pdf_utf16_text(sheet.title) + " >>");
   std::size_t number = 6;
   const auto add = [&](const Eigen::Vector2d& paper, const std::string& content) {
-    file.object("<< /Type /Page /Parent 2 0 R /MediaBox [ 0 0 " +
-                pdf_point(kPointsOfMillimetre * paper) +
-                "] /Resources << /Font << /F1 3 0 R >> >> /Contents " + std::to_string(number) +
-                " 0 R >>");
+    file.object(
+        "<< /Type /Page /Parent 2 0 R /MediaBox [ 0 0 " + pdf_point(kPointsOfMillimetre * paper) +
+        "] /Resources << /Font << /F1 3 0 R >> >> /Contents " + std::to_string(number) + " 0 R >>");
     file.stream(content);
     number += 2;
   };

@@ -12,7 +12,7 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr int kStrainDecimals = 2;     ///< of coordinates (mm)
+constexpr int kStrainDecimals = 2;      ///< of coordinates (mm)
 constexpr double kStrainOutline = 0.3;  ///< width of lines (mm)
 constexpr double kStrainCut = 1;        ///< width of suggested cuts (mm)
 /// Width of the line around each triangle, in its colour, so that no gap shows between two (mm).
@@ -35,11 +35,12 @@ class StrainSvg {
 
   std::string write() {
     const std::string w = strain_number(sheet_.size.x()), h = strain_number(sheet_.size.y());
-    out_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-           "version=\"1.1\" width=\"" +
-           w + "mm\" height=\"" + h + "mm\" viewBox=\"0 0 " + w + " " + h +
-           "\" stroke-linejoin=\"round\">\n<rect width=\"" + w + "\" height=\"" + h +
-           "\" fill=\"#ffffff\"/>\n";
+    out_ =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+        "version=\"1.1\" width=\"" +
+        w + "mm\" height=\"" + h + "mm\" viewBox=\"0 0 " + w + " " + h +
+        "\" stroke-linejoin=\"round\">\n<rect width=\"" + w + "\" height=\"" + h +
+        "\" fill=\"#ffffff\"/>\n";
     for (const StrainPatch& patch : sheet_.patches) write_patch(patch);
     write_lines("outlines", sheet_.outlines, kStrainOutline, "");
     write_lines("added", sheet_.added, kStrainCut, " stroke-dasharray=\"6 3\"");

@@ -18,7 +18,6 @@ namespace geoprior::sketch {
 /// @param verdict  of the piece, below its name; none when empty
 /// @throws Error   naming the piece whose borders cross or are degenerate (seam_allowance.h)
 SheetPiece draw_piece(const Pattern& pattern, int piece, const std::vector<Notch>& notches,
-                      const SheetOptions& options,
-                      const std::u32string& verdict = {});
+                      const SheetOptions& options, const std::u32string& verdict = {});
 
 }  // namespace geoprior::sketch

@@ -33,9 +33,9 @@ FlatPiece flat_piece(const PatternPiece& piece, const Eigen::MatrixX3d& surface,
                      const std::string& label) {
   FlatPiece flat{piece.points, Eigen::MatrixX3d(piece.points.rows(), 3), piece.triangles};
   if (std::ssize(piece.surface_vertex) != piece.points.rows()) {
-    throw Error("has surface vertices for " + std::to_string(piece.surface_vertex.size()) +
-                    " points",
-                label, std::to_string(piece.points.rows()));
+    throw Error(
+        "has surface vertices for " + std::to_string(piece.surface_vertex.size()) + " points",
+        label, std::to_string(piece.points.rows()));
   }
   for (Eigen::Index i = 0; i < flat.x.rows(); ++i) {
     const int v = piece.surface_vertex[i];

@@ -27,16 +27,16 @@ struct AddedSeam {
 /// Strain of a triangle is max(s1, 1 / s2) - 1, s1 >= s2 the singular values of the map from the
 /// surface to the plane: metrics/isometry/flattening.h.
 struct PieceVerdict {
-  double area = 0;        ///< of the piece on the surface (m^2)
-  double strain_p95 = 0;  ///< that 95 % of its area stay under
-  double share = 1;       ///< of its area with a strain within kTakenStrain
-  double area_error = 0;  ///< flat area over that of the surface, minus 1
-  int flips = 0;          ///< triangles turned over
-  double worst = 0;       ///< largest strain of a triangle, and where it is
+  double area = 0;                       ///< of the piece on the surface (m^2)
+  double strain_p95 = 0;                 ///< that 95 % of its area stay under
+  double share = 1;                      ///< of its area with a strain within kTakenStrain
+  double area_error = 0;                 ///< flat area over that of the surface, minus 1
+  int flips = 0;                         ///< triangles turned over
+  double worst = 0;                      ///< largest strain of a triangle, and where it is
   Eigen::Vector2d worst_flat{0, 0};      ///< middle of that triangle in the pattern (m)
   Eigen::Vector3d worst_place{0, 0, 0};  ///< and on the surface (m)
-  std::string nearest;                   ///< the seam or border that is nearest to it in the pattern
-  std::string refused;                   ///< why the piece is not to be cut; empty: it may be
+  std::string nearest;  ///< the seam or border that is nearest to it in the pattern
+  std::string refused;  ///< why the piece is not to be cut; empty: it may be
   AddedSeam seam;
 
   [[nodiscard]] bool is_strained() const { return share < kSewnShare; }
@@ -54,8 +54,9 @@ std::vector<PieceVerdict> judge_pieces(const Pattern& pattern, const Eigen::Matr
 /// pattern, 1 / s2 - 1, below 0 where it is shorter, 1 - s1, whichever is farther from 0.
 Eigen::VectorXd signed_strain(const PatternPiece& piece, const Eigen::MatrixX3d& surface);
 
-/// The cut that is suggested for a piece that is strained (solvers/sketch/pattern/seam_suggestion.h),
-/// by itself: its seams with others stay as they are. Nothing where none eases it.
+/// The cut that is suggested for a piece that is strained
+/// (solvers/sketch/pattern/seam_suggestion.h), by itself: its seams with others stay as they are.
+/// Nothing where none eases it.
 AddedSeam added_seam(const PatternPiece& piece, const Eigen::MatrixX3d& surface);
 
 /// "strain p95 3.2 %, 91 % of the area within 2 %".

@@ -12,13 +12,13 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr int kStrainLevels = 12;       ///< of colour, to either side of none
-constexpr double kStrainMargin = 15;    ///< around everything (mm)
-constexpr double kStrainText = 4;       ///< height (mm)
-constexpr double kStrainFooter = 38;    ///< title and colour bar (mm)
-constexpr double kBarBox = 8;           ///< width of a level in the bar (mm)
-constexpr double kWorstRadius = 3;      ///< of the mark of the worst place (mm)
-constexpr double kLeastSheet = 240;     ///< width, for title and bar (mm)
+constexpr int kStrainLevels = 12;     ///< of colour, to either side of none
+constexpr double kStrainMargin = 15;  ///< around everything (mm)
+constexpr double kStrainText = 4;     ///< height (mm)
+constexpr double kStrainFooter = 38;  ///< title and colour bar (mm)
+constexpr double kBarBox = 8;         ///< width of a level in the bar (mm)
+constexpr double kWorstRadius = 3;    ///< of the mark of the worst place (mm)
+constexpr double kLeastSheet = 240;   ///< width, for title and bar (mm)
 
 int level_of(double strain) {
   const double share = std::clamp(strain / kColouredStrain, -1.0, 1.0);
@@ -41,7 +41,8 @@ class StrainDrawing {
         box_.extend(Eigen::Vector2d(1000 * piece.points.row(i).transpose()));
     }
     shift_ = Eigen::Vector2d(kStrainMargin, kStrainMargin + kStrainFooter) - box_.min();
-    sheet_.size = box_.sizes() + Eigen::Vector2d(2 * kStrainMargin, 2 * kStrainMargin + kStrainFooter);
+    sheet_.size =
+        box_.sizes() + Eigen::Vector2d(2 * kStrainMargin, 2 * kStrainMargin + kStrainFooter);
     sheet_.size.x() = std::max(sheet_.size.x(), kLeastSheet);
   }
 
@@ -95,8 +96,8 @@ class StrainDrawing {
     const PatternPiece& flat = pattern_.pieces[piece];
     for (Eigen::Index i = 0; i < flat.points.rows(); ++i)
       box.extend(on_sheet(flat.points.row(i).transpose()));
-    const std::string name = "'" + flat.name + "'" +
-                             (verdict.refused.empty() ? "" : " REFUSED: " + verdict.refused);
+    const std::string name =
+        "'" + flat.name + "'" + (verdict.refused.empty() ? "" : " REFUSED: " + verdict.refused);
     const Eigen::Vector2d below(box.center().x(), box.min().y());
     write_below(below, 1, box.sizes().x(), strain_text(name));
     write_below(below, 2.4, box.sizes().x(), strain_text(short_verdict(verdict)));
@@ -118,8 +119,8 @@ class StrainDrawing {
     SheetLine circle{SheetLayer::text, true, {}, 0};
     for (int i = 0; i < kSides; ++i) {
       const double angle = kFullTurn * i / kSides;
-      circle.points.emplace_back(at + kWorstRadius *
-                                          Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      circle.points.emplace_back(at +
+                                 kWorstRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
     sheet_.worst.push_back(std::move(circle));
     for (const Eigen::Vector2d& d : {Eigen::Vector2d(1, 1), Eigen::Vector2d(1, -1)}) {
@@ -138,9 +139,9 @@ class StrainDrawing {
       patches_[level].triangles.push_back({low, high, left});
       if (level % (kStrainLevels / 2) != 0) continue;
       const auto per_cent = std::lround(100 * strain_of_level(level));
-      sheet_.texts.push_back({low + Eigen::Vector2d(kBarBox / 2, -4), 3.5,
-                              strain_text((per_cent > 0 ? "+" : "") + std::to_string(per_cent) +
-                                          " %")});
+      sheet_.texts.push_back(
+          {low + Eigen::Vector2d(kBarBox / 2, -4), 3.5,
+           strain_text((per_cent > 0 ? "+" : "") + std::to_string(per_cent) + " %")});
     }
     const Eigen::Vector2d size((2 * kStrainLevels + 1) * kBarBox, 6);
     sheet_.outlines.push_back({SheetLayer::sew,

@@ -28,10 +28,10 @@ struct StrainPatch {
 /// Right and up in millimetres from the lower left corner; pieces lie as in the pattern.
 struct StrainSheet {
   Eigen::Vector2d size{0, 0};
-  std::vector<StrainPatch> patches;      ///< by strain, ascending
-  std::vector<SheetLine> outlines;       ///< of pieces, and of the colour bar
-  std::vector<SheetLine> worst;          ///< crosses in circles at the worst places
-  std::vector<SheetLine> added;          ///< cuts that are suggested
+  std::vector<StrainPatch> patches;  ///< by strain, ascending
+  std::vector<SheetLine> outlines;   ///< of pieces, and of the colour bar
+  std::vector<SheetLine> worst;      ///< crosses in circles at the worst places
+  std::vector<SheetLine> added;      ///< cuts that are suggested
   std::vector<SheetText> texts;
 };
 
