@@ -166,7 +166,9 @@ std::string short_verdict(const PieceVerdict& verdict) {
 }
 
 std::string verdict_line(const Pattern& pattern, int piece, const PieceVerdict& verdict) {
-  std::string line = piece_label(pattern, piece) + ": ";
+  std::string line = "piece " + std::to_string(piece + 1) + " of " +
+                     std::to_string(pattern.pieces.size()) + " '" + pattern.pieces[piece].name +
+                     "': ";
   if (!verdict.refused.empty()) line += "REFUSED, " + verdict.refused + "; ";
   line += short_verdict(verdict) + "; worst " + percent(verdict.worst, 1) + " near " +
           verdict.nearest + ", in the pattern at x " + whole_millimetres(verdict.worst_flat.x()) +

@@ -125,7 +125,7 @@ TEST(JudgedFabrication, LeavesTheOtherPiecesAndTheirNumbers) {
   EXPECT_THAT(files.at("pattern.dxf"), Not(HasSubstr("P1-FLAG")));
   EXPECT_THAT(files.at("pattern.dxf"), HasSubstr("P2-SAIL"));
   EXPECT_THAT(files.at("pattern.json"), HasSubstr("\"refused\": true"));
-  EXPECT_THAT(files.at("pattern-verdict.txt"), HasSubstr("piece 1 'sail'"));
+  EXPECT_THAT(files.at("pattern-verdict.txt"), HasSubstr("piece 2 of 2 'sail'"));
 }
 
 TEST(JudgedFabrication, SuggestsACutWhereAPieceIsStrained) {
