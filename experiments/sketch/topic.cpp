@@ -20,7 +20,7 @@ Topic make_topic() {
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.files = {drawing_keys()};
-  topic.commands = {sketch_command()};
+  topic.commands = {sketch_command(make_topic)};
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};
   topic.view.shading = FigureView::Shading::flat;
