@@ -17,7 +17,6 @@
 #include "experiments/sketch/command/result_folder.h"
 #include "experiments/sketch/drawing/picture_file.h"
 #include "experiments/sketch/scene/scene.h"
-#include "experiments/sketch/topic.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/execute.h"
 #include "testbed/runner/number_text.h"
@@ -115,8 +114,8 @@ const VariantRecord& only_variant(const ExecuteResult& result) {
 }
 
 /// Runs the experiment as if its file were in the folder already.
-ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFolder& folder) {
-  const std::vector<Topic> topics{make_topic()};
+ExecuteResult run_drawn(const std::string& text, const fs::path& file, ResultFolder& folder,
+                        const std::vector<Topic>& topics) {
   const Experiment experiment = load_recorded_experiment(text, file.string(), file, topics);
   ExecuteRequest request;
   request.out = folder.unfinished() / "run";
@@ -150,7 +149,7 @@ std::optional<Part> last_part(const OpenedRun& run, const VariantRecord& variant
 }
 
 /// What is written on the pieces of the picture: the names in the lines of their verdicts, which
-/// begin with "piece 0 'sole': ".
+/// begin with "piece 1 of 3 'sole': ".
 std::vector<std::string> piece_names(const std::string& verdicts) {
   std::vector<std::string> names;
   for (std::size_t at = 0; at < verdicts.size();) {
@@ -242,7 +241,8 @@ CommandText result_text(const ReadSketch& read, const fs::path& folder, const fs
   return out;
 }
 
-CommandText sketch(const std::string& input, const SketchCommandOptions& options) {
+CommandText sketch(const std::string& input, const SketchCommandOptions& options,
+                   const std::vector<Topic>& topics) {
   const ReadSketch read = read_sketch(input, options);
   std::optional<PixelImage> photo = decoded_photo(*read.scene);
   install_stop_handler();
@@ -251,7 +251,7 @@ CommandText sketch(const std::string& input, const SketchCommandOptions& options
   DrawnExperiment experiment = drawn_experiment(read, options, folder.path(), photo.has_value());
   if (experiment.kind == DrawnKind::one_view) experiment.snap = chosen_snap(read.scene->photo());
   const std::string text = experiment_text(experiment);
-  const ExecuteResult result = run_drawn(text, folder.path() / file, folder);
+  const ExecuteResult result = run_drawn(text, folder.path() / file, folder, topics);
   const OpenedRun run(result.folder, result.record);
   const VariantRecord& variant = only_variant(result);
   const fs::path& made = folder.unfinished();
@@ -288,10 +288,13 @@ void describe(OptionVisitor& v, SketchCommandOptions& options) {
           {.doc = "write pieces to be cut although their strain refuses them"});
 }
 
-TopicCommand sketch_command() {
+TopicCommand sketch_command(Topic (*topic)()) {
   return topic_command<SketchCommandOptions>(
       "sketch", "surface, sewing pattern and picture of an annotated drawing", "drawing",
-      "SVG with layers view:front, view:side, view:top, or view:photo", sketch);
+      "SVG with layers view:front, view:side, view:top, or view:photo",
+      [topic](const std::string& input, const SketchCommandOptions& options) {
+        return sketch(input, options, {topic()});
+      });
 }
 
 }  // namespace geoprior::sketch

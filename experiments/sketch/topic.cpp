@@ -20,7 +20,7 @@ Topic make_topic() {
   topic.metrics = metrics();
   topic.diagnostics = diagnostics();
   topic.told_files = {"pattern-verdict.txt"};
-  topic.commands = {sketch_command()};
+  topic.commands = {sketch_command(make_topic)};
   topic.files = {drawing_keys(), stroke_keys()};
   topic.view.direction = {0.8, 0.5, 1};
   topic.view.up = {0, 1, 0};

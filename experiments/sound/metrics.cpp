@@ -71,7 +71,7 @@ void add_energies(Rows& rows) {
     const bool last = i + 1 == kSnapEnergies.size();
     const std::string until =
         last ? " uJ or more" : " uJ to " + std::to_string(kSnapEnergies[i + 1]) + " uJ";
-    rows.row("snaps_" + from + "uJ", "1",
+    rows.row("snaps_" + from + "uj", "1",
              "flaps and cracs of an energy of " + from + until + " (3: the root of 10)", kNone,
              kCount, [i](const SoundMeasures& m) { return static_cast<double>(m.by_energy[i]); });
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/sketch/layers/articulated_layers.h"
+#include "solvers/sketch/layers/layered_body.h"
 
 namespace geoprior::sketch {
 
