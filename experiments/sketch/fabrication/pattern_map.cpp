@@ -19,7 +19,6 @@ PatternJson json_edges(const PatternPiece& piece) {
   PatternJson edges = PatternJson::array();
   for (const PieceEdge& edge : piece.edges) {
     PatternJson one{{"points", edge.vertices}, {"length_mm", 1000 * edge_length(piece, edge)}};
-    if (!edge.name.empty()) one["name"] = edge.name;
     if (edge.partner_piece >= 0) {
       one["seam"] = edge.seam;
       one["sewn_to"] = {{"piece", edge.partner_piece}, {"edge", edge.partner_edge}};

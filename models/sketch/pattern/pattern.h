@@ -12,7 +12,6 @@ struct PieceEdge {
   int seam = -1;              ///< of the drawing or proposed; -1: a free border
   int partner_piece = -1;     ///< it is sewn to; -1 for a free border
   int partner_edge = -1;      ///< of that piece, run through the opposite way
-  std::string name = {};      ///< of the stroke it comes from; empty: not known
 };
 
 /// A round hole in a piece, for a rivet.
