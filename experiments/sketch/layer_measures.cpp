@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/angles.h"
+#include "metrics/arrangement/lengths.h"
 #include "metrics/contact/intersection_depth.h"
 #include "metrics/contact/self_contact.h"
 #include "metrics/isometry/border_lengths.h"
@@ -104,11 +105,8 @@ std::pair<double, double> image_distances(const Stroke& stroke, const Eigen::Mat
 
 double distance_to_line(const Eigen::MatrixX3d& line, const Eigen::Vector3d& p) {
   double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i + 1 < line.rows(); ++i) {
-    const Eigen::Vector3d a = line.row(i).transpose(), d = line.row(i + 1).transpose() - a;
-    const double share = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (a + share * d - p).norm());
-  }
+  for (Eigen::Index i = 0; i + 1 < line.rows(); ++i)
+    least = std::min(least, distance_from_segment(p, line.row(i), line.row(i + 1)));
   return least;
 }
 

@@ -19,8 +19,10 @@ namespace geoprior::sketch {
 namespace {
 
 /// The files to cut by.
-void add_cut_files(const PatternSheet& sheet, const FabricationOptions& options,
-                   std::span<const PdfExtraPage> more, std::vector<FabricationFile>& files) {
+std::vector<FabricationFile> cut_files(const Pattern& pattern, const PatternSheet& sheet,
+                                       const FabricationOptions& options,
+                                       std::span<const PdfExtraPage> more) {
+  std::vector<FabricationFile> files;
   const std::vector<SheetPage> pages = sheet_pages(sheet, options.pages);
   files.push_back({"pattern.svg", svg_page(sheet, whole_sheet(sheet), options.layers)});
   files.push_back({"pattern.dxf", dxf_drawing(sheet)});
@@ -29,6 +31,9 @@ void add_cut_files(const PatternSheet& sheet, const FabricationOptions& options,
     if (page.label.empty()) continue;
     files.push_back({"pattern-" + page.label + ".svg", svg_page(sheet, page, options.layers)});
   }
+  files.push_back({"pattern.csv", pattern_map_csv(pattern, sheet)});
+  files.push_back({"pattern.json", pattern_json(pattern, sheet)});
+  return files;
 }
 
 /// A cut for the piece whose pattern loses most area to strain, of those that are strained or
@@ -66,12 +71,7 @@ void describe(OptionVisitor& v, FabricationOptions& options) {
 
 std::vector<FabricationFile> fabrication_files(const Pattern& pattern,
                                                const FabricationOptions& options) {
-  const PatternSheet sheet = pattern_sheet(pattern, options.sheet);
-  std::vector<FabricationFile> files;
-  add_cut_files(sheet, options, {}, files);
-  files.push_back({"pattern.csv", pattern_map_csv(pattern, sheet)});
-  files.push_back({"pattern.json", pattern_json(pattern, sheet)});
-  return files;
+  return cut_files(pattern, pattern_sheet(pattern, options.sheet), options, {});
 }
 
 std::vector<FabricationFile> judged_fabrication_files(const Pattern& pattern,
@@ -92,9 +92,7 @@ std::vector<FabricationFile> judged_fabrication_files(const Pattern& pattern,
   }
   if (refusals < verdicts.size()) {
     const PdfExtraPage page = strain_pdf_page(strain);
-    add_cut_files(sheet, options, {&page, 1}, files);
-    files.push_back({"pattern.csv", pattern_map_csv(pattern, sheet)});
-    files.push_back({"pattern.json", pattern_json(pattern, sheet)});
+    files = cut_files(pattern, sheet, options, {&page, 1});
   }
   files.push_back({"pattern-strain.svg", strain_svg(strain)});
   files.push_back({"pattern-verdict.txt", lines});

@@ -1,13 +1,13 @@
 #include "experiments/sketch/fabrication/strain_page.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <cstdint>
 
 #include "experiments/sketch/fabrication/escaped_text.h"
 #include "experiments/sketch/fabrication/layer_style.h"
 #include "experiments/sketch/fabrication/written_number.h"
 #include "experiments/sketch/pattern/sheet_text.h"
+#include "testbed/formats/svg/color.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -21,12 +21,10 @@ constexpr double kStrainOverlap = 0.15;
 std::string strain_number(double x) { return written_number(x, kStrainDecimals); }
 
 std::string strain_hex(const Eigen::Vector3d& colour) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x",
-                static_cast<unsigned>(std::lround(255 * colour.x())),
-                static_cast<unsigned>(std::lround(255 * colour.y())),
-                static_cast<unsigned>(std::lround(255 * colour.z())));
-  return text.data();
+  const auto channel = [&](int k) {
+    return static_cast<std::uint8_t>(std::lround(255 * colour(k)));
+  };
+  return to_text(SvgColour{channel(0), channel(1), channel(2)});
 }
 
 class StrainSvg {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/mesh.h"
+#include "metrics/arrangement/lengths.h"
 #include "metrics/isometry/flattening.h"
 #include "models/sketch/pattern/piece_border.h"
 #include "solvers/sketch/pattern/seam_suggestion.h"
@@ -50,13 +51,14 @@ FlatPiece flat_piece(const PatternPiece& piece, const Eigen::MatrixX3d& surface,
 
 double distance_from_edge(const PatternPiece& piece, const PieceEdge& edge,
                           const Eigen::Vector2d& p) {
+  const auto in_space = [](const Eigen::Vector2d& at) {
+    return Eigen::Vector3d(at.x(), at.y(), 0);
+  };
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < edge.vertices.size(); ++i) {
-    const Eigen::Vector2d a = piece.points.row(edge.vertices[i - 1]).transpose();
-    const Eigen::Vector2d along = piece.points.row(edge.vertices[i]).transpose() - a;
-    const double squared = along.squaredNorm();
-    const double share = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
-    least = std::min(least, (a + share * along - p).norm());
+    least = std::min(
+        least, distance_from_segment(in_space(p), in_space(piece.points.row(edge.vertices[i - 1])),
+                                     in_space(piece.points.row(edge.vertices[i]))));
   }
   return least;
 }

@@ -102,29 +102,30 @@ void finish_sheet(PatternSheet& sheet, const SheetOptions& options) {
                                  count_of_pieces(sheet) + ", true scale"));
 }
 
-}  // namespace
-
-PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) {
+/// The sheet of pieces that `draw(piece, notches)` gives.
+template <class Draw>
+PatternSheet sheet_of(const Pattern& pattern, const SheetOptions& options, const Draw& draw) {
   require_drawable(pattern);
   const std::vector<Notch> notches =
       paired_notches(pattern, {.spacing = options.notch_spacing_mm / 1000});
   PatternSheet sheet;
   sheet.title = label_text(options.title, 80);
-  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
-    sheet.pieces.push_back(draw_piece(pattern, k, notches, options));
-  }
+  for (int k = 0; k < std::ssize(pattern.pieces); ++k) sheet.pieces.push_back(draw(k, notches));
   finish_sheet(sheet, options);
   return sheet;
 }
 
+}  // namespace
+
+PatternSheet pattern_sheet(const Pattern& pattern, const SheetOptions& options) {
+  return sheet_of(pattern, options, [&](int k, const std::vector<Notch>& notches) {
+    return draw_piece(pattern, k, notches, options);
+  });
+}
+
 PatternSheet judged_sheet(const Pattern& pattern, const SheetOptions& options, bool force,
                           std::vector<PieceVerdict>& verdicts) {
-  require_drawable(pattern);
-  const std::vector<Notch> notches =
-      paired_notches(pattern, {.spacing = options.notch_spacing_mm / 1000});
-  PatternSheet sheet;
-  sheet.title = label_text(options.title, 80);
-  for (int k = 0; k < std::ssize(pattern.pieces); ++k) {
+  return sheet_of(pattern, options, [&](int k, const std::vector<Notch>& notches) {
     PieceVerdict& verdict = verdicts[k];
     if (force) verdict.refused.clear();
     SheetPiece drawn;
@@ -138,10 +139,8 @@ PatternSheet judged_sheet(const Pattern& pattern, const SheetOptions& options, b
     drawn.refused = !verdict.refused.empty();
     drawn.name = pattern.pieces[k].name;
     drawn.label = label_text(drawn.name, 40);
-    sheet.pieces.push_back(std::move(drawn));
-  }
-  finish_sheet(sheet, options);
-  return sheet;
+    return drawn;
+  });
 }
 
 }  // namespace geoprior::sketch

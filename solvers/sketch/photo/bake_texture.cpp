@@ -39,6 +39,13 @@ PixelColour rounded_colour(const Eigen::Vector3d& c) {
   return colour;
 }
 
+/// What the photograph shows of a point.
+struct SeenColour {
+  Eigen::Vector3d colour;
+  bool inside =
+      false;  ///< taken from farther inside, as the point's own image is too near a border
+};
+
 /// What the photograph shows of the surface.
 class SeenSurface {
  public:
@@ -48,10 +55,9 @@ class SeenSurface {
   /// Colour of a point that is seen, at its place in the picture; nothing when it is not.
   /// @param normal  of the surface there, to the outside
   /// @param patch   that it belongs to
-  std::optional<Eigen::Vector3d> colour(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                        const Eigen::Vector2d& texture, int patch);
-  /// Whether the last colour was taken from farther inside.
-  [[nodiscard]] bool moved_inside() const { return moved_inside_; }
+  [[nodiscard]] std::optional<SeenColour> colour(const Eigen::Vector3d& point,
+                                                 const Eigen::Vector3d& normal,
+                                                 const Eigen::Vector2d& texture, int patch) const;
   /// Texture coordinates of a point's own image.
   [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& point) const {
     return (point.head<2>() - origin_).cwiseQuotient(size_);
@@ -79,7 +85,6 @@ class SeenSurface {
   double disagreement_;            ///< of photograph and drawing (pixels)
   double behind_;
   std::vector<char> outer_;  ///< pixels so near to a silhouette that the photograph may be off
-  bool moved_inside_ = false;
 };
 
 SeenSurface::SeenSurface(const View& view, const PixelImage& photo, const OneViewResult& result,
@@ -178,19 +183,18 @@ void SeenSurface::decide_outsides(const OneViewResult& result) {
   }
 }
 
-std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
-                                                   const Eigen::Vector3d& normal,
-                                                   const Eigen::Vector2d& texture, int patch) {
-  moved_inside_ = false;
+std::optional<SeenColour> SeenSurface::colour(const Eigen::Vector3d& point,
+                                              const Eigen::Vector3d& normal,
+                                              const Eigen::Vector2d& texture, int patch) const {
   if (normal.z() < options_.least_facing) return {};
   const Eigen::Vector2d at = grid_.pixels_at(point.head<2>());
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
   if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return {};
-  const std::size_t i = static_cast<std::size_t>(y) * grid_.width + x;
-  if (nearest_.depth[i] > point.z() + behind_) return {};
-  const Eigen::Vector2d in_photo(texture.x() * photo_.width - 0.5,
-                                 (1 - texture.y()) * photo_.height - 0.5);
-  if (disagreement_ == 0) return photo_colour(photo_, in_photo);
+  if (nearest_.depth[pixel(x, y)] > point.z() + behind_) return {};
+  const auto in_photo = [&](const Eigen::Vector2d& of) {
+    return photo_colour(photo_, {of.x() * photo_.width - 0.5, (1 - of.y()) * photo_.height - 0.5});
+  };
+  if (disagreement_ == 0) return SeenColour{in_photo(texture)};
   // Four pixels are mixed.
   const int left = static_cast<int>(std::floor(at.x())), top = static_cast<int>(std::floor(at.y()));
   const auto unsafe = [&](int column, int row) {
@@ -199,16 +203,13 @@ std::optional<Eigen::Vector3d> SeenSurface::colour(const Eigen::Vector3d& point,
   };
   if (!unsafe(left, top) && !unsafe(left + 1, top) && !unsafe(left, top + 1) &&
       !unsafe(left + 1, top + 1)) {
-    return photo_colour(photo_, in_photo);
+    return SeenColour{in_photo(texture)};
   }
   const auto inside = nearest_inner(at, patch);
   if (!inside) return {};
-  moved_inside_ = true;
   const Eigen::Vector2d place =
       grid_.place(static_cast<int>(inside->x()), static_cast<int>(inside->y()));
-  const Eigen::Vector2d there = (place - origin_).cwiseQuotient(size_);
-  return photo_colour(photo_,
-                      {there.x() * photo_.width - 0.5, (1 - there.y()) * photo_.height - 0.5});
+  return SeenColour{in_photo((place - origin_).cwiseQuotient(size_)), true};
 }
 
 /// The pieces of a pattern as one mesh in z = 0, with the places of its points in space.
@@ -267,7 +268,7 @@ enum class TexelSource : std::uint8_t { none, seen, mirrored, flat };
 
 class PatternBaker {
  public:
-  PatternBaker(SeenSurface& seen, const OneViewResult& result, const PatternInSpace& pieces,
+  PatternBaker(const SeenSurface& seen, const OneViewResult& result, const PatternInSpace& pieces,
                const PixelGrid& grid)
       : seen_(seen),
         result_(result),
@@ -288,7 +289,7 @@ class PatternBaker {
   void fill_hidden();
   void bleed_once();
 
-  SeenSurface& seen_;
+  const SeenSurface& seen_;
   const OneViewResult& result_;
   const PatternInSpace& pieces_;
   PixelGrid grid_;
@@ -320,15 +321,18 @@ void PatternBaker::colour_texel(std::size_t texel) {
   }
   source_[texel] = TexelSource::seen;
   const int patch = surface.patch[t];
-  std::optional<Eigen::Vector3d> colour = seen_.colour(point, normal, texture, patch);
-  if (!colour) {
+  std::optional<SeenColour> seen = seen_.colour(point, normal, texture, patch);
+  if (!seen) {
     const Eigen::Vector3d image = mirrored(plane, point);
     source_[texel] = TexelSource::mirrored;
-    colour = seen_.colour(image, reflected(normal), seen_.projected(image), patch);
+    seen = seen_.colour(image, reflected(normal), seen_.projected(image), patch);
   }
-  if (!colour) source_[texel] = TexelSource::flat;
-  if (colour && seen_.moved_inside()) ++moved_inside_;
-  if (colour) colour_[texel] = *colour;
+  if (!seen) {
+    source_[texel] = TexelSource::flat;
+    return;
+  }
+  if (seen->inside) ++moved_inside_;
+  colour_[texel] = seen->colour;
 }
 
 /// Mean colours where nothing is seen.
@@ -423,7 +427,7 @@ void describe(OptionVisitor& v, BakeOptions& o) {
 
 BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneViewResult& result,
                           const Pattern& pattern, const BakeOptions& options) {
-  SeenSurface seen(view, photo, result, options);
+  const SeenSurface seen(view, photo, result, options);
   const PatternInSpace pieces = merged_pieces(pattern);
   const PixelGrid grid = pattern_grid(pieces.flat, view.picture.size.x() / photo.width, options);
   return PatternBaker(seen, result, pieces, grid).bake(options.bleed);

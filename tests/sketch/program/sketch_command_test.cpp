@@ -115,7 +115,7 @@ TEST_F(SketchProgram, LongMakesThePiecesOfADrawingOfInkscapes) {
                         "surface.obj", "run/run.h5"});
   EXPECT_THAT(log(), AllOf(HasSubstr("pot.svg: several views (front, side, top)\n"),
                            HasSubstr(result.string() + "\n"), HasSubstr("  pattern.svg "),
-                           HasSubstr("piece 0 "), HasSubstr("piece 1 ")));
+                           HasSubstr("piece 1 of 2 "), HasSubstr("piece 2 of 2 ")));
   const Part pattern = pattern_of(result / "run");
   const double d = 0.09, h = 0.08;
   const double area = std::numbers::pi * d * (h + d / 4);
