@@ -13,6 +13,7 @@
 #include "models/sketch/drawing/drawing_part.h"
 #include "models/sketch/flatten/flat_stretch.h"
 #include "models/sketch/pattern/piece_names.h"
+#include "models/sketch/ridges/drawn_ridges.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -275,7 +276,8 @@ PreparedSketch prepare_sketch(const SketchInput& input) {
   const Drawing aligned = align_views(input.drawing, input.align);
   prepared.surface = sketch_surface(
       aligned, input.make_hull ? input.make_hull(aligned) : visual_hull(aligned, input.hull));
-  prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing);
+  prepared.start = taubin_smoothed(prepared.surface.hull.mesh, input.smoothing,
+                                   edges_of(drawn_ridges(prepared.surface.hull)));
   return prepared;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/connectivity.h"
 #include "models/sketch/drawing/polyline.h"
+#include "models/sketch/ridges/drawn_ridges.h"
 #include "solvers/sketch/pattern/fair_seams.h"
 #include "solvers/sketch/surface/pinned_transfer.h"
 
@@ -34,17 +35,68 @@ void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& 
   pins.set(vertex, along.axis, along.sign * value);
 }
 
-/// A surface's mesh with vertices of their own on the two sides of every seam.
+/// Puts vertices that leave the silhouette of their view back onto it and holds them there: at
+/// their place on it, where they have one near, else across it.
+class SilhouetteStops {
+ public:
+  SilhouetteStops(const VisualHull& hull, std::size_t view)
+      : hull_(hull.mesh.V),
+        view_(hull.views[view]),
+        places_(hull.places[view]),
+        spacing_(hull.spacing),
+        held_(Eigen::VectorXd::Zero(hull.mesh.V.rows())) {}
+
+  void hold(const Eigen::MatrixX3d& X, CoordinatePins& pins) {
+    constexpr double kOutside = 1e-6;  // edges
+    for (int v = 0; v < X.rows(); ++v) {
+      const Eigen::Vector2d q = view_.project(X.row(v).transpose());
+      const Outline::Nearest at = view_.outline.nearest(q);
+      const bool at_its_place = has_place_near(v, at.arc_length);
+      if (at.distance > kOutside * spacing_ && at_its_place) held_[v] = 1;
+      if (held_[v] == 0 && (at_its_place || at.distance < -kOutside * spacing_)) continue;
+      const int k = std::abs(at.normal.x()) >= std::abs(at.normal.y()) ? 0 : 1;
+      if (held_[v] == 1) {
+        const Eigen::Vector2d place = view_.project(hull_.row(v).transpose());
+        set(v, k, place[k], pins);
+        set(v, 1 - k, place[1 - k], pins);
+      } else {
+        const double slope = at.normal[1 - k] / at.normal[k];
+        set(v, k, at.point[k] - slope * (q[1 - k] - at.point[1 - k]), pins);
+      }
+    }
+  }
+
+  void save(StateWriter& out) const { out.matrix(held_); }
+  void load(StateReader& in) { in.matrix(held_); }
+
+ private:
+  [[nodiscard]] bool has_place_near(int vertex, double arc_length) const {
+    return places_[vertex] && std::abs(std::remainder(places_[vertex]->arc_length - arc_length,
+                                                      view_.outline.length())) < spacing_;
+  }
+  void set(int vertex, int k, double value, CoordinatePins& pins) const {
+    const ViewAxis axis = view_axis(view_.frame, k);
+    pins.set(vertex, axis.axis, axis.sign * value);
+  }
+
+  const Eigen::MatrixX3d& hull_;
+  const OutlinedView& view_;
+  const std::vector<std::optional<SilhouettePlace>>& places_;
+  double spacing_;        ///< m
+  Eigen::VectorXd held_;  ///< 1: from now on
+};
+
+/// A surface's mesh with vertices of their own on the two sides of every cut.
 struct SeveredMesh {
   Eigen::MatrixX3i F;               ///< in the order of the surface's triangles
   std::vector<int> surface_vertex;  ///< of each vertex
 };
 
-SeveredMesh severed(const SketchSurface& surface) {
+SeveredMesh severed(const SketchSurface& surface, const std::vector<SeamEdge>& cuts) {
   const TriMesh& mesh = surface.hull.mesh;
   SeveredMesh cut{Eigen::MatrixX3i(mesh.F.rows(), 3), {}};
   int first = 0;
-  for (const CutPiece& piece : cut_surface(mesh, seam_edges(surface))) {
+  for (const CutPiece& piece : cut_surface(mesh, cuts)) {
     first = static_cast<int>(cut.surface_vertex.size());
     for (int t = 0; t < piece.mesh.triangle_count(); ++t)
       cut.F.row(piece.surface_triangle[t]) = piece.mesh.F.row(t).array() + first;
@@ -57,10 +109,16 @@ SeveredMesh severed(const SketchSurface& surface) {
   return cut;
 }
 
+/// Ridges that were drawn as corners, and seams where they are asked for.
+std::vector<SeamEdge> creases_of(const SketchSurface& surface, bool seams) {
+  std::vector<SeamEdge> creases;
+  if (seams) creases = seam_edges(surface);
+  for (const DrawnRidge& ridge : drawn_ridges(surface.hull)) creases.push_back({ridge.edge, 0});
+  return creases;
+}
+
 DevelopableRotation rotation_of(const SketchSurface& surface, const SeveralViewsOptions& options) {
-  const TriMesh& mesh = surface.hull.mesh;
-  if (options.across_seams) return {mesh.F, mesh.vertex_count(), options.developability};
-  const SeveredMesh cut = severed(surface);
+  const SeveredMesh cut = severed(surface, creases_of(surface, !options.across_seams));
   return {cut.F, static_cast<int>(cut.surface_vertex.size()), options.developability};
 }
 
@@ -76,17 +134,20 @@ class SeveralViews final : public SketchMethod {
   SeveralViews(const PreparedSketch& prepared, const SeveralViewsOptions& options)
       : surface_(prepared.surface),
         options_(options),
+        ridges_(drawn_ridges(surface_.hull)),
         X_(prepared.start),
-        severed_(severed(surface_)),
+        severed_(severed(surface_, creases_of(surface_, true))),
         rotation_(rotation_of(surface_, options)),
         average_(on_both_sides(prepared.start), severed_.F, options.fairing),
         faired_(static_cast<int>(options.fairing.share * iterations_of(prepared, options))),
         fold_(surface_, options.fold),
         transfer_(surface_.hull.mesh.F, surface_.hull.mesh.vertex_count()) {
     const EdgeConnectivity edges(surface_.hull.mesh.F);
-    for (std::size_t v = 0; v < surface_.hull.views.size(); ++v)
+    for (std::size_t v = 0; v < surface_.hull.views.size(); ++v) {
       zippering_.emplace_back(surface_.hull.views[v], surface_.hull.places[v], edges.edges(),
                               options.silhouette);
+      stops_.emplace_back(surface_.hull, v);
+    }
   }
 
   void step(RunContext& context) override {
@@ -118,10 +179,12 @@ class SeveralViews final : public SketchMethod {
   void save(StateWriter& out) const override {
     out.matrix(X_);
     out.number(steps_);
+    for (const SilhouetteStops& stops : stops_) stops.save(out);
   }
   void load(StateReader& in) override {
     in.matrix(X_);
     steps_ = in.number<int>();
+    for (SilhouetteStops& stops : stops_) stops.load(in);
   }
 
   void diagnose(std::map<std::string, double>& into) const override {
@@ -187,7 +250,16 @@ class SeveralViews final : public SketchMethod {
       const BorderPlace& border = surface_.borders[surface_.border_of[v]];
       pin_across(border.points, surface_.hull.views[border.view], v, X_, pins);
     }
-    if (!options_.silhouettes) return;
+    if (options_.silhouettes) pin_silhouettes(pins);
+  }
+
+  /// Vertices of a flat side that lies on a silhouette stay inside by zippering, which chooses
+  /// those that protrude; where a round one only touches it, folds beside may go out through it.
+  void pin_silhouettes(CoordinatePins& pins) {
+    pin_ridges(pins);
+    // What smoothing brought outside comes in by itself.
+    for (SilhouetteStops& stops : stops_)
+      if (steps_ > 0) stops.hold(X_, pins);
     for (std::size_t view = 0; view < zippering_.size(); ++view) {
       const ZippedSilhouette zipped = zippering_[view].close(surface_.hull.mesh.V, X_);
       edges_ += static_cast<int>(zipped.edges.size());
@@ -203,10 +275,25 @@ class SeveralViews final : public SketchMethod {
     }
   }
 
+  /// Ridges that were drawn stay on the corners of their view and slide along their depth.
+  void pin_ridges(CoordinatePins& pins) const {
+    for (const DrawnRidge& ridge : ridges_) {
+      const Eigen::Matrix3d& frame = surface_.hull.views[ridge.view].frame;
+      for (const int v : ridge.edge) {
+        for (int k = 0; k < 2; ++k) {
+          const int axis = view_axis(frame, k).axis;
+          pins.set(v, axis, surface_.hull.mesh.V(v, axis));
+        }
+      }
+    }
+  }
+
   const SketchSurface& surface_;
   SeveralViewsOptions options_;
+  std::vector<DrawnRidge> ridges_;
   Eigen::MatrixX3d X_;
   std::vector<Zippering> zippering_;
+  std::vector<SilhouetteStops> stops_;  ///< of the views, too
   SeveredMesh severed_;
   DevelopableRotation rotation_;
   RulingAverage average_;

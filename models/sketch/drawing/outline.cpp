@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -108,6 +109,17 @@ Outline::Nearest Outline::nearest(const Eigen::Vector2d& x) const {
     }
   }
   return on_segment(best, x);
+}
+
+std::vector<double> Outline::corners() const {
+  constexpr double kLeastTurn = std::numbers::pi / 6;
+  std::vector<double> corners;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector2d in = points_[i] - points_[(i + points_.size() - 1) % points_.size()];
+    const Eigen::Vector2d out = points_[(i + 1) % points_.size()] - points_[i];
+    if (in.dot(out) < std::cos(kLeastTurn) * in.norm() * out.norm()) corners.push_back(arc_[i]);
+  }
+  return corners;
 }
 
 Eigen::Vector2d Outline::at(double arc_length) const {

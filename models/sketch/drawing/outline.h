@@ -27,6 +27,8 @@ class Outline {
   /// Arc length at a point of the polygon (m).
   [[nodiscard]] double arc_length(int point) const { return arc_[point]; }
   [[nodiscard]] Eigen::Vector2d at(double arc_length) const;
+  /// Arc lengths of its corners, where it turns by more than 30 degrees, ascending (m).
+  [[nodiscard]] std::vector<double> corners() const;
   /// Corners of the box: lowest and highest coordinates.
   [[nodiscard]] const Eigen::Vector2d& lowest() const { return lowest_; }
   [[nodiscard]] const Eigen::Vector2d& highest() const { return highest_; }

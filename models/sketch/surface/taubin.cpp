@@ -37,7 +37,25 @@ void append_row(const Eigen::SparseMatrix<double>& weights, int v, const std::ve
   }
 }
 
-Averages averages_of(const TriMesh& mesh, const TaubinOptions& options) {
+/// Neighbours along ridges, of each vertex.
+std::vector<std::vector<int>> ridge_neighbours(const std::vector<Edge>& ridges, int vertices) {
+  std::vector<std::vector<int>> neighbours(vertices);
+  for (const auto& [a, b] : ridges) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  return neighbours;
+}
+
+/// Appends the row of a vertex of ridges; none at their ends and branches.
+void append_ridge_row(const std::vector<int>& along, Averages& averages) {
+  if (along.size() != 2) return;
+  averages.neighbour.insert(averages.neighbour.end(), along.begin(), along.end());
+  averages.weight.insert(averages.weight.end(), 2, 0.5);
+}
+
+Averages averages_of(const TriMesh& mesh, const TaubinOptions& options,
+                     const std::vector<Edge>& ridges) {
   Eigen::MatrixX3d corner_weights = Eigen::MatrixX3d::Ones(mesh.triangle_count(), 3);
   if (options.weight == NeighbourWeight::cotangent) corner_weights = corner_cotangents(mesh);
   Eigen::SparseMatrix<double> weights =
@@ -47,9 +65,12 @@ Averages averages_of(const TriMesh& mesh, const TaubinOptions& options) {
     weights = weights.unaryExpr([](double w) { return w > 0 ? 1.0 : w; });
   }
   const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
+  const std::vector<std::vector<int>> ridge = ridge_neighbours(ridges, mesh.vertex_count());
   Averages averages;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    if (!(options.fixed_border && border[v]))
+    if (!ridge[v].empty())
+      append_ridge_row(ridge[v], averages);
+    else if (!(options.fixed_border && border[v]))
       append_row(weights, v, border, !options.fixed_border, averages);
     averages.begin.push_back(static_cast<int>(averages.neighbour.size()));
   }
@@ -83,13 +104,14 @@ void describe(OptionVisitor& v, TaubinOptions& options) {
           {.doc = "whether vertices of the border stay; otherwise neighbours along it count"});
 }
 
-Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options) {
+Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options,
+                                 const std::vector<Edge>& ridges) {
   if (!(options.lambda > 0)) throw Error("lambda is not positive", "Taubin smoothing", "above 0");
   if (!(options.mu < -options.lambda))
     throw Error("mu does not undo what lambda shrinks", "Taubin smoothing", "below -lambda");
   if (options.double_steps < 0)
     throw Error("the number of double steps is negative", "Taubin smoothing", "0 or more");
-  const Averages averages = averages_of(mesh, options);
+  const Averages averages = averages_of(mesh, options, ridges);
   Eigen::Matrix3Xd x = mesh.V.transpose(), between(3, mesh.V.rows());
   for (int step = 0; step < options.double_steps; ++step) {
     filter_step(averages, options.lambda, x, between);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "core/connectivity.h"
 #include "core/mesh.h"
 #include "core/options.h"
 
@@ -30,9 +33,14 @@ void describe(OptionVisitor& v, TaubinOptions& options);
 
 /// Positions after smoothing (n x 3); a vertex without triangles stays.
 ///
+/// Vertices of ridges move along them: with two of their edges by the two neighbours there; at
+/// their ends and where they branch they stay.
+///
 /// @param mesh    triangle mesh, open or closed
+/// @param ridges  edges of the mesh that stay sharp
 /// @throws Error  for lambda not above 0, mu not below -lambda, or a negative number of steps
 /// Source: Taubin 1995; thesis 2.1.2.
-Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options = {});
+Eigen::MatrixX3d taubin_smoothed(const TriMesh& mesh, const TaubinOptions& options = {},
+                                 const std::vector<Edge>& ridges = {});
 
 }  // namespace geoprior::sketch

@@ -117,19 +117,6 @@ GridFunction hull_function(const std::vector<OutlinedView>& views, const HullGri
   return f;
 }
 
-/// Arc lengths of the corners of an outline: where it turns by more than 30 degrees. Ascending.
-std::vector<double> corners_of(const Outline& outline) {
-  const std::vector<Eigen::Vector2d>& p = outline.points();
-  std::vector<double> corners;
-  for (int i = 0; i < std::ssize(p); ++i) {
-    const Eigen::Vector2d in = p[i] - p[(i + p.size() - 1) % p.size()];
-    const Eigen::Vector2d out = p[(i + 1) % p.size()] - p[i];
-    if (in.dot(out) < std::cos(0.5236) * in.norm() * out.norm())
-      corners.push_back(outline.arc_length(i));
-  }
-  return corners;
-}
-
 /// Moves vertices of the nets onto the faces of the hull that their cells cross: a face is a view
 /// and a run of its silhouette between two corners. A vertex of two faces comes to lie on the edge
 /// between them, exactly.
@@ -138,7 +125,7 @@ class SilhouetteFit {
   SilhouetteFit(const std::vector<OutlinedView>& views, double spacing,
                 const SectionBounds& sections)
       : views_(views), spacing_(spacing), same_(0.02 * spacing), sections_(sections) {
-    for (const OutlinedView& view : views) corners_.push_back(corners_of(view.outline));
+    for (const OutlinedView& view : views) corners_.push_back(view.outline.corners());
   }
 
   [[nodiscard]] Eigen::Vector3d fitted(Eigen::Vector3d x,
@@ -200,16 +187,45 @@ class SilhouetteFit {
     return best;
   }
 
-  /// A round section touches a silhouette along a line between vertices. Those whose distance from
-  /// it is that of a chord of two edges, on a radius of one and a half edges or more, come onto it.
+  /// A round section touches a silhouette along a line between vertices. The nearest of them come
+  /// onto it, if that moves them by no more than a chord of two edges on a radius of one and a half
+  /// edges is off its arc.
   [[nodiscard]] Eigen::Vector3d on_touched_silhouettes(Eigen::Vector3d x) const {
+    constexpr double kFarthest = 0.08;
     for (const OutlinedView& view : views_) {
       const Eigen::Vector2d q = view.project(x);
       const Outline::Nearest nearest = view.outline.nearest(q);
-      if (nearest.distance > -0.08 * spacing_)
+      if (nearest.distance > 0 || (nearest.distance > -kFarthest * spacing_ &&
+                                   section_turns_near(x, view.frame.row(2).transpose())))
         x += view.frame.topRows<2>().transpose() * (nearest.point - q);
     }
     return x;
+  }
+
+  /// 0 where no section is near.
+  [[nodiscard]] Eigen::Vector3d section_normal(const Eigen::Vector3d& x) const {
+    const double step = 1e-4 * spacing_;
+    Eigen::Vector3d gradient;
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::Vector3d d = step * Eigen::Vector3d::Unit(c);
+      const double change = sections_.value(x + d) - sections_.value(x - d);
+      gradient[c] = std::isfinite(change) ? change : 0;
+    }
+    return gradient.stableNormalized();
+  }
+
+  /// Whether the section through `x` becomes parallel to the view direction nearer than to the next
+  /// vertex, by its curvature there.
+  [[nodiscard]] bool section_turns_near(const Eigen::Vector3d& x,
+                                        const Eigen::Vector3d& direction) const {
+    constexpr double kStep = 0.25, kReach = 0.6;  // edges
+    const Eigen::Vector3d normal = section_normal(x);
+    const double sine = normal.dot(direction);
+    const Eigen::Vector3d tangent = (direction - sine * normal).stableNormalized();
+    const double toward = sine > 0 ? -kStep * spacing_ : kStep * spacing_;
+    const double next = section_normal(x + toward * tangent).dot(direction);
+    const double turned = std::abs(sine) - (sine > 0 ? next : -next);
+    return std::abs(sine) * kStep <= kReach * turned;
   }
 
   /// What is outside of a silhouette comes in.
