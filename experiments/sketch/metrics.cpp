@@ -59,7 +59,7 @@ MetricGroup surface_group() {
            "length of these edges, which turn by more than 6 degrees beyond it", kLow, {1e-3, 0.03},
            [](M m) { return m.crease.length; })
       .row("crease_clean_length", "m",
-           "length of those among them that are lines which neither fork nor turn sharply", kNone,
+           "length of those among them that follow each other smoothly, four or more between forks", kNone,
            {0.02, 0.05}, [](M m) { return m.crease.clean_length; })
       .row("crease_saw", "1", "share of crease_turning in all others: teeth", kLow, {0.03, 0},
            [](M m) { return m.crease.saw_share; })

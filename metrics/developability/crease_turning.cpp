@@ -160,9 +160,9 @@ class CleanLines {
       if (!in || visited[e]) continue;
       std::vector<int> line{e};
       visited[e] = 1;
-      bool fits = walk(e, a, visited, line);
-      fits = walk(e, b, visited, line) && fits;
-      if (fits && std::ssize(line) >= kLeast) {
+      walk(e, a, visited, line);
+      walk(e, b, visited, line);
+      if (std::ssize(line) >= kLeast) {
         for (const int of : line) clean[of] = 1;
       }
     }
@@ -175,18 +175,15 @@ class CleanLines {
     const Eigen::Vector3d d = (mesh_.V.row(a == from ? b : a) - mesh_.V.row(from)).transpose();
     return d.normalized();
   }
-  /// Follows a line through a vertex until it ends.
-  /// @return  whether it ends freely or in a corner of three; not at a branch or a sharp turn
-  bool walk(int edge, int vertex, std::vector<char>& visited, std::vector<int>& line) const {
-    while (true) {
+  /// Follows a line through a vertex until it ends: freely, in a branch, or where it turns sharply
+  /// or the other way.
+  void walk(int edge, int vertex, std::vector<char>& visited, std::vector<int>& line) const {
+    while (at_[vertex].size() == 2) {
       const std::vector<int>& here = at_[vertex];
-      if (here.size() == 1 || here.size() == 3) return true;
-      if (here.size() != 2) return false;
       const int next = here[0] == edge ? here[1] : here[0];
-      if (-direction(edge, vertex).dot(direction(next, vertex)) < std::cos(35 * kDegree) ||
-          turns_[edge].angle * turns_[next].angle < 0)
-        return std::ssize(line) >= 4;
-      if (visited[next]) return true;
+      const double straight = -direction(edge, vertex).dot(direction(next, vertex));
+      if (straight < std::cos(35 * kDegree) || turns_[edge].angle * turns_[next].angle < 0) return;
+      if (visited[next]) return;
       visited[next] = 1;
       line.push_back(next);
       const auto [a, b] = edges_.edge(next);

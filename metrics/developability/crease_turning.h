@@ -15,7 +15,7 @@ inline constexpr double kCreaseTurn = 6 * kDegree;
 struct CreaseMeasures {
   double turning = 0;       ///< integral of the excess angle along the edges of creases (rad m)
   double length = 0;        ///< of all edges of creases (m)
-  double clean_length = 0;  ///< of those that run on smoothly in one line, or where three meet (m)
+  double clean_length = 0;  ///< of those that run on smoothly in lines (m)
   double saw_share = 0;     ///< share of `turning` in the others: teeth; 0 without creases
   double rest_p95 = 0;  ///< what 95 % of the length of all edges off clean creases stay under, of
                         ///< the excess angle (rad)
@@ -32,9 +32,9 @@ struct CreaseMeasures {
 /// the flat strips beside a fold explain nothing; teeth, whose neighbours turn the other way,
 /// explain nothing of each other either.
 ///
-/// A crease is clean where a line of its edges, at least four of them, turns by at most 35 degrees
-/// from one to the next, keeps its sign, and meets no further edge of a crease but where three
-/// clean lines meet in a corner. All else is a saw.
+/// A crease is clean where at least four of its edges follow each other in a line that turns by at
+/// most 35 degrees from one to the next and keeps its sign, between branches, where a further edge
+/// of a crease meets it. All else is a saw, whose teeth are branches or turns at every edge or two.
 ///
 /// What it misjudges: a fillet of less than about five edges across is partly a crease (a bend of
 /// 90 degrees over n strips: see the test); on a bend whose triangles stand across it irregularly

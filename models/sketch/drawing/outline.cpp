@@ -4,15 +4,17 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/geometry/planar.h"
 
 namespace geoprior::sketch {
 namespace {
+
+constexpr double kCornerTurn = 30 * kDegree;
 
 double twice_area(const std::vector<Eigen::Vector2d>& points) {
   double sum = 0;
@@ -111,15 +113,22 @@ Outline::Nearest Outline::nearest(const Eigen::Vector2d& x) const {
   return on_segment(best, x);
 }
 
-std::vector<double> Outline::corners() const {
-  constexpr double kLeastTurn = std::numbers::pi / 6;
+std::vector<double> Outline::corners_that(bool (*count)(double turn)) const {
   std::vector<double> corners;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Eigen::Vector2d in = points_[i] - points_[(i + points_.size() - 1) % points_.size()];
     const Eigen::Vector2d out = points_[(i + 1) % points_.size()] - points_[i];
-    if (in.dot(out) < std::cos(kLeastTurn) * in.norm() * out.norm()) corners.push_back(arc_[i]);
+    if (count(signed_angle(in, out))) corners.push_back(arc_[i]);
   }
   return corners;
+}
+
+std::vector<double> Outline::corners() const {
+  return corners_that([](double turn) { return std::abs(turn) > kCornerTurn; });
+}
+
+std::vector<double> Outline::convex_corners() const {
+  return corners_that([](double turn) { return turn > kCornerTurn; });
 }
 
 Eigen::Vector2d Outline::at(double arc_length) const {

@@ -29,6 +29,8 @@ class Outline {
   [[nodiscard]] Eigen::Vector2d at(double arc_length) const;
   /// Arc lengths of its corners, where it turns by more than 30 degrees, ascending (m).
   [[nodiscard]] std::vector<double> corners() const;
+  /// Those of them that point outward.
+  [[nodiscard]] std::vector<double> convex_corners() const;
   /// Corners of the box: lowest and highest coordinates.
   [[nodiscard]] const Eigen::Vector2d& lowest() const { return lowest_; }
   [[nodiscard]] const Eigen::Vector2d& highest() const { return highest_; }
@@ -37,6 +39,7 @@ class Outline {
  private:
   [[nodiscard]] int cell(const Eigen::Vector2d& x, int axis) const;
   void fill_grid();
+  [[nodiscard]] std::vector<double> corners_that(bool (*count)(double turn)) const;
   [[nodiscard]] Nearest on_segment(int segment, const Eigen::Vector2d& x) const;
 
   std::vector<Eigen::Vector2d> points_;

@@ -26,7 +26,7 @@ std::vector<DrawnRidge> drawn_ridges(const VisualHull& hull) {
   std::vector<std::vector<int>> corner_of;
   for (std::size_t v = 0; v < hull.views.size(); ++v) {
     const Outline& outline = hull.views[v].outline;
-    const std::vector<double> corners = outline.corners();
+    const std::vector<double> corners = outline.convex_corners();
     std::vector<int>& of_view = corner_of.emplace_back();
     for (const std::optional<SilhouettePlace>& place : hull.places[v])
       of_view.push_back(corner_at(place, corners, outline.length(), near));

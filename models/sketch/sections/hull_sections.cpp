@@ -85,8 +85,18 @@ SectionBounds::SectionBounds(const Drawing& aligned, const std::vector<OutlinedV
 double SectionBounds::value(const Eigen::Vector3d& x) const {
   double value = -std::numeric_limits<double>::infinity();
   if (top_) value = top_->distance(top_->at(x.y()), {x.x(), -x.z()});
-  for (const TubeSections& tubes : tubes_) value = std::max(value, tubes.value(x));
+  for (const TubeSections& tubes : tubes_) {
+    const double of = tubes.value(x);
+    if (of > value && !is_known_elsewhere(tubes, x)) value = of;
+  }
   return value;
+}
+
+bool SectionBounds::is_known_elsewhere(const TubeSections& tubes, const Eigen::Vector3d& x) const {
+  return tubes_.size() > 1 && tubes.is_guessed(x) &&
+         std::any_of(tubes_.begin(), tubes_.end(), [&](const TubeSections& other) {
+           return &other != &tubes && std::isfinite(other.value(x)) && !other.is_guessed(x);
+         });
 }
 
 Eigen::Vector3d SectionBounds::moved_on(const Eigen::Vector3d& x, double step) const {
@@ -95,7 +105,7 @@ Eigen::Vector3d SectionBounds::moved_on(const Eigen::Vector3d& x, double step) c
   double here = -std::numeric_limits<double>::infinity();
   for (const TubeSections& tubes : tubes_) {
     const double value = tubes.value(x);
-    if (value <= here) continue;
+    if (value <= here || is_known_elsewhere(tubes, x)) continue;
     here = value;
     outermost = &tubes;
   }
@@ -125,7 +135,7 @@ void SectionBounds::bound_by_top(GridFunction& f) const {
   }
 }
 
-void SectionBounds::bound_by_tubes(const TubeSections& tubes, GridFunction& f) {
+void SectionBounds::bound_by_tubes(const TubeSections& tubes, GridFunction& f) const {
   const int along = tubes.axis(), p = tubes.first_across(), q = tubes.second_across();
   std::array<int, 3> at{};
   for (at[along] = 0; at[along] < f.size[along]; ++at[along]) {
@@ -133,8 +143,9 @@ void SectionBounds::bound_by_tubes(const TubeSections& tubes, GridFunction& f) {
     for (at[q] = 0; at[q] < f.size[q]; ++at[q]) {
       for (at[p] = 0; at[p] < f.size[p]; ++at[p]) {
         double& value = f.values[f.index(at[0], at[1], at[2])];
-        value = std::max(
-            value, section.value(f.origin[p] + at[p] * f.spacing, f.origin[q] + at[q] * f.spacing));
+        const Eigen::Vector3d x = f.origin + f.spacing * Eigen::Vector3d(at[0], at[1], at[2]);
+        const double of = section.value(x[p], x[q]);
+        if (of > value && !is_known_elsewhere(tubes, x)) value = of;
       }
     }
   }

@@ -21,6 +21,8 @@ namespace geoprior::sketch {
 ///    of front and side, unless that contradicts the drawing (`TopSections::contradiction`).
 /// 2. Else tubes that end in drawn borders are round (`TubeSections`), each across the axis of
 ///    space that its rim is most nearly orthogonal to; a view along that axis keeps its silhouette.
+///    Where round sections leave more than a twentieth of a silhouette unfilled, they contradict
+///    it.
 /// 3. All else is a box, as far as the views let it.
 ///
 /// It cannot: tell a box that is open at one end, drawn without its top view, from a tube
@@ -44,7 +46,9 @@ class SectionBounds {
 
  private:
   void bound_by_top(GridFunction& f) const;
-  static void bound_by_tubes(const TubeSections& tubes, GridFunction& f);
+  void bound_by_tubes(const TubeSections& tubes, GridFunction& f) const;
+  /// Whether tubes guess a width at a point where those of another axis know it.
+  [[nodiscard]] bool is_known_elsewhere(const TubeSections& tubes, const Eigen::Vector3d& x) const;
 
   std::optional<TopSections> top_;
   std::vector<TubeSections> tubes_;  ///< an axis each

@@ -76,7 +76,7 @@ double widest_of(const std::vector<Slice>& slices) {
 
 }  // namespace
 
-double TubeSection::value(double p, double q) const {
+const SectionPart* TubeSection::nearest(double p, double q) const {
   const SectionPart* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const SectionPart& part : parts) {
@@ -85,12 +85,22 @@ double TubeSection::value(double p, double q) const {
     least = away;
     nearest = &part;
   }
+  return nearest;
+}
+
+bool TubeSection::is_guessed(double p, double q) const {
+  const SectionPart* part = nearest(p, q);
+  return part != nullptr && part->hidden;
+}
+
+double TubeSection::value(double p, double q) const {
+  const SectionPart* part = nearest(p, q);
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  if (nearest == nullptr || nearest->round <= 0 || nearest->tube < 0) return kNone;
-  const double a = half_width(nearest->p), b = half_width(nearest->q);
-  const double u = (p - nearest->p.middle()) / a, v = (q - nearest->q.middle()) / b;
-  const double n = exponents[nearest->tube][quadrant(u, v)] / nearest->round;
-  if (n > kBoxExponent && !nearest->hidden) return kNone;
+  if (part == nullptr || part->round <= 0 || part->tube < 0) return kNone;
+  const double a = half_width(part->p), b = half_width(part->q);
+  const double u = (p - part->p.middle()) / a, v = (q - part->q.middle()) / b;
+  const double n = exponents[part->tube][quadrant(u, v)] / part->round;
+  if (n > kBoxExponent && !part->hidden) return kNone;
   const double norm = superellipse_norm(u, v, std::min(n, 4 * kBoxExponent));
   return (norm / (1 + kSectionSlack) - 1) * std::min(a, b);
 }
@@ -261,6 +271,10 @@ TubeSection TubeSections::at(double along) const {
 
 double TubeSections::value(const Eigen::Vector3d& x) const {
   return at(x[axis_]).value(x[first_across()], x[second_across()]);
+}
+
+bool TubeSections::is_guessed(const Eigen::Vector3d& x) const {
+  return at(x[axis_]).is_guessed(x[first_across()], x[second_across()]);
 }
 
 Eigen::Vector3d TubeSections::gradient(const Eigen::Vector3d& x, double step) const {

@@ -32,6 +32,11 @@ struct TubeSection {
   /// Below 0 inside of the round part nearest to (p, q); near its outline about the distance.
   /// Minus infinity where that part is not round.
   [[nodiscard]] double value(double p, double q) const;
+  /// Whether a width of that part is a guess, since no view shows it.
+  [[nodiscard]] bool is_guessed(double p, double q) const;
+
+ private:
+  [[nodiscard]] const SectionPart* nearest(double p, double q) const;
 };
 
 /// Round sections across one axis of space, of the tubes that end in drawn rims.
@@ -62,6 +67,7 @@ class TubeSections {
   [[nodiscard]] TubeSection at(double along) const;
   /// As TubeSection::value, at a point of space.
   [[nodiscard]] double value(const Eigen::Vector3d& x) const;
+  [[nodiscard]] bool is_guessed(const Eigen::Vector3d& x) const;
   /// Its change, by differences over a step; 0 along axes on which it is not finite.
   [[nodiscard]] Eigen::Vector3d gradient(const Eigen::Vector3d& x, double step) const;
   /// Exponents of the tubes; tubes of several rims are one.
