@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 
 namespace geoprior::sketch {
 namespace {
@@ -17,6 +18,27 @@ int corner_at(const std::optional<SilhouettePlace>& place, const std::vector<dou
       return static_cast<int>(c);
   }
   return -1;
+}
+
+/// Leaves one edge of a triangle that lies on one corner with all its vertices: the longest.
+std::set<Edge> edges_within_corners(const TriMesh& mesh, const std::vector<int>& corner_of) {
+  std::set<Edge> within;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Eigen::RowVector3i f = mesh.F.row(t);
+    if (corner_of[f(0)] < 0 || corner_of[f(0)] != corner_of[f(1)] ||
+        corner_of[f(0)] != corner_of[f(2)])
+      continue;
+    const auto length = [&](int k) {
+      return (mesh.V.row(f(k)) - mesh.V.row(f((k + 1) % 3))).norm();
+    };
+    int longest = 0;
+    for (int k = 1; k < 3; ++k) longest = length(k) > length(longest) ? k : longest;
+    for (int k = 0; k < 3; ++k) {
+      const int a = f(k), b = f((k + 1) % 3);
+      if (k != longest) within.insert({std::min(a, b), std::max(a, b)});
+    }
+  }
+  return within;
 }
 
 }  // namespace
@@ -33,13 +55,17 @@ std::vector<DrawnRidge> drawn_ridges(const VisualHull& hull) {
   }
   const EdgeConnectivity edges(hull.mesh.F);
   std::vector<DrawnRidge> ridges;
+  std::vector<std::set<Edge>> within;
+  for (const std::vector<int>& of : corner_of)
+    within.push_back(edges_within_corners(hull.mesh, of));
   for (const auto& [a, b] : edges.edges()) {
-    const auto of_view =
-        std::find_if(corner_of.begin(), corner_of.end(),
-                     [a = a, b = b](const auto& of) { return of[a] >= 0 && of[a] == of[b]; });
-    if (of_view == corner_of.end()) continue;
-    ridges.push_back(
-        {{std::min(a, b), std::max(a, b)}, static_cast<int>(of_view - corner_of.begin())});
+    const Edge edge{std::min(a, b), std::max(a, b)};
+    for (std::size_t v = 0; v < corner_of.size(); ++v) {
+      const int at = corner_of[v][a];
+      if (at < 0 || at != corner_of[v][b] || within[v].contains(edge)) continue;
+      ridges.push_back({edge, static_cast<int>(v)});
+      break;
+    }
   }
   std::sort(ridges.begin(), ridges.end(),
             [](const DrawnRidge& x, const DrawnRidge& y) { return x.edge < y.edge; });

@@ -13,6 +13,9 @@
 namespace geoprior::sketch {
 namespace {
 
+constexpr double kThinnest = 0.3;  ///< height of a triangle that is made, over its longest edge
+constexpr double kNeedle = 0.02;   ///< the same of one that is flipped away whatever it turns by
+
 /// One pass over the edges. What a flip touches is left alone until the next pass, since the
 /// connectivity is that of its beginning.
 class FlipPass {
@@ -78,7 +81,11 @@ class FlipPass {
     const double longest = std::max({(at(c) - at(d)).squaredNorm(), (at(b) - at(c)).squaredNorm(),
                                      (at(c) - at(a)).squaredNorm(), (at(a) - at(d)).squaredNorm(),
                                      (at(d) - at(b)).squaredNorm()});
-    if (std::min(by_a.norm(), by_b.norm()) < 0.3 * longest) return false;
+    const double thinnest = std::min(n.norm(), m.norm());
+    const double thinnest_after = std::min(by_a.norm(), by_b.norm());
+    const bool is_needle = thinnest < kNeedle * (at(a) - at(b)).squaredNorm();
+    if (is_needle && thinnest_after > 2 * thinnest) return apply(*found);
+    if (thinnest_after < kThinnest * longest) return false;
     const double before = turning(a, b, n, m) + turning_to(b, c, n, around[0]) +
                           turning_to(c, a, n, around[1]) + turning_to(a, d, m, around[2]) +
                           turning_to(d, b, m, around[3]);
@@ -86,10 +93,14 @@ class FlipPass {
                          turning_to(c, a, by_a, around[1]) + turning_to(a, d, by_a, around[2]) +
                          turning_to(d, b, by_b, around[3]);
     if (!(after < before - 1e-3 * (at(a) - at(b)).norm())) return false;
-    mesh_.F.row(left) << c, d, b;
-    mesh_.F.row(right) << d, c, a;
-    touched_[left] = touched_[right] = 1;
-    for (const int triangle : around) {
+    return apply(*found);
+  }
+
+  bool apply(const Diamond& of) {
+    mesh_.F.row(of.left) << of.c, of.d, of.b;
+    mesh_.F.row(of.right) << of.d, of.c, of.a;
+    touched_[of.left] = touched_[of.right] = 1;
+    for (const int triangle : of.around) {
       if (triangle >= 0) touched_[triangle] = 1;
     }
     return true;
