@@ -66,9 +66,13 @@ SurfaceMeasures surface_measures(const SketchScene& /*scene*/, const Frame& fram
   const auto& fold = part.require_array("fold", NamedArray::On::points, 1).values;
   std::vector<bool> left_out(mesh.V.rows());
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) left_out[v] = seam(v) > 0 || fold(v) > 0;
+  std::vector<bool> drawn = left_out;
+  if (const NamedArray* ridge = part.find_array("ridge")) {
+    for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) drawn[v] = drawn[v] || ridge->values(v) > 0;
+  }
   return {developability_spread(mesh), developability_spread(mesh, left_out),
           sharp_turning_share(mesh, kSharpTurn, left_out),
-          crease_measures(mesh, kCreaseTurn, left_out), length_between(mesh, left_out)};
+          crease_measures(mesh, kCreaseTurn, drawn), length_between(mesh, drawn)};
 }
 
 SilhouetteMeasures silhouette_measures(const SketchScene& scene, const Frame& frame) {

@@ -83,6 +83,32 @@ std::vector<std::string> one_view_warnings(const SketchScene& scene,
   return {note};
 }
 
+/// What is decided before anything is solved.
+void add_readings(DiagnosticTable& table) {
+  table.unmeasured(
+      "how the drawing was read: of known shapes depth and axes are measured",
+      {{"axis_residual", "deg",
+        "between the mirror plane and the axis that a free ellipse has, the reading that was "
+        "kept; the largest"},
+       {"axis_residual_other", "deg", "of the other reading, the least"},
+       {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
+       {"perspective", "1", "growth of the image over one diagonal of depth, as found"}});
+  table.unmeasured(
+      "what the hull's sections were taken for: of known things areas are measured",
+      {{"openings", "1", "drawn borders that end tubes, of all views together"},
+       {"round_tubes", "1", "tubes with round sections that end in them"},
+       {"top_sections", "1", "share of the closed hull's area on the scaled top view's outline"},
+       {"round_sections", "1", "share on round sections"},
+       {"box_sections", "1", "share on the faces that the views see"}});
+  table.unmeasured(
+      "where a texture's points came from: its picture alone is recorded",
+      {{"texture_seen", "1", "share of the pattern that the photograph shows"},
+       {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
+       {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
+       {"texture_inside", "1",
+        "share of what is shown that lies beside a silhouette and has the colour farther inside"}});
+}
+
 }  // namespace
 
 std::vector<MethodEntry> methods() {
@@ -179,28 +205,7 @@ std::vector<DiagnosticEntry> diagnostics() {
         "overlap of a layer below the one before over that one's visible length, the least"},
        {"overlap_most", "1", "and the largest of all joints"},
        {"room_least", "deg", "angle either way for which the strip below has room, the least"}});
-  table.unmeasured(
-      "how the drawing was read: of known shapes depth and axes are measured",
-      {{"axis_residual", "deg",
-        "between the mirror plane and the axis that a free ellipse has, the reading that was "
-        "kept; the largest"},
-       {"axis_residual_other", "deg", "of the other reading, the least"},
-       {"vector_ratio", "1", "length of sym-a over that of sym-b in space, as found"},
-       {"perspective", "1", "growth of the image over one diagonal of depth, as found"}});
-  table.unmeasured(
-      "what the hull's sections were taken for: of known things areas are measured",
-      {{"openings", "1", "drawn borders that end tubes, of all views together"},
-       {"round_tubes", "1", "tubes with round sections that end in them"},
-       {"top_sections", "1", "share of the closed hull's area on the scaled top view's outline"},
-       {"round_sections", "1", "share on round sections"},
-       {"box_sections", "1", "share on the faces that the views see"}});
-  table.unmeasured(
-      "where a texture's points came from: its picture alone is recorded",
-      {{"texture_seen", "1", "share of the pattern that the photograph shows"},
-       {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
-       {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
-       {"texture_inside", "1",
-        "share of what is shown that lies beside a silhouette and has the colour farther inside"}});
+  add_readings(table);
   return table.rows();
 }
 

@@ -52,23 +52,25 @@ MetricGroup surface_group() {
            "that no seam or fold runs along, in edges that turn by more than 20 degrees",
            kLow, {0.005, 0}, [](M m) { return m.sharp_turning; })
       .row("crease_turning", "m",
-           "integral, along the edges of creases off seams, borders and folds, of the angle beyond "
-           "what edge length over local radius explains (rad m)",
+           "integral, along the edges of creases off seams, borders, folds and drawn corners, of "
+           "the "
+           "angle beyond what edge length over local radius explains (rad m)",
            kLow, {1e-4, 0.03}, [](M m) { return m.crease.turning; })
       .row("crease_edges", "m",
            "length of these edges, which turn by more than 6 degrees beyond it", kLow, {1e-3, 0.03},
            [](M m) { return m.crease.length; })
       .row("crease_clean_length", "m",
-           "length of those among them that follow each other smoothly, four or more between forks", kNone,
-           {0.02, 0.05}, [](M m) { return m.crease.clean_length; })
+           "length of those among them that follow each other smoothly, four or more between forks",
+           kNone, {0.02, 0.05}, [](M m) { return m.crease.clean_length; })
       .row("crease_saw", "1", "share of crease_turning in all others: teeth", kLow, {0.03, 0},
            [](M m) { return m.crease.saw_share; })
       .row("crease_rest_p95", "deg",
            "angle beyond edge length over local radius that 95 % of the length of all edges stay "
-           "under, off clean creases, seams and folds",
+           "under, off clean creases and what was drawn as one",
            kLow, {0.05, 0.03}, [](M m) { return m.crease.rest_p95 / kDegree; })
-      .row("crease_drawn", "m", "length of the edges along seams and folds, which may be creases",
-           kNone, {1e-3, 0.02}, [](M m) { return m.drawn_length; });
+      .row("crease_drawn", "m",
+           "length of the edges along seams, folds and drawn corners, which may be creases", kNone,
+           {1e-3, 0.02}, [](M m) { return m.drawn_length; });
 }
 
 MetricGroup silhouette_group() {

@@ -28,7 +28,7 @@ Part surface_of(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
   part.points = X;
   part.triangles = s.hull.mesh.F;
   NamedArray border = vertex_flags("border", X.rows()), seam = vertex_flags("seam", X.rows()),
-             fold = vertex_flags("fold", X.rows());
+             fold = vertex_flags("fold", X.rows()), ridge = vertex_flags("ridge", X.rows());
   for (const Edge& e : boundary_edges(s.hull.mesh.F)) border.values(e[0]) = border.values(e[1]) = 1;
   const auto mark = [](const std::vector<StrokePath>& paths, NamedArray& flags) {
     for (const StrokePath& path : paths) {
@@ -37,7 +37,9 @@ Part surface_of(const PreparedSketch& prepared, const Eigen::MatrixX3d& X) {
   };
   mark(s.seams, seam);
   mark(s.folds, fold);
-  part.arrays = {std::move(border), std::move(seam), std::move(fold)};
+  for (const DrawnRidge& of : drawn_ridges(s.hull))
+    ridge.values(of.edge[0]) = ridge.values(of.edge[1]) = 1;
+  part.arrays = {std::move(border), std::move(seam), std::move(fold), std::move(ridge)};
   return part;
 }
 

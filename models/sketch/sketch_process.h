@@ -89,7 +89,8 @@ struct SeamSuggester {
 
 /// One recorded state. Metrics of the topic read these parts and nothing else:
 ///
-/// - "surface" (triangles): point arrays "border", "seam", "fold" (0 or 1);
+/// - "surface" (triangles): point arrays "border", "seam", "fold", "ridge" (0 or 1; the last of
+///   corners that were drawn, see `drawn_ridges`);
 /// - "strokes" (lines): borders, seams and folds on the surface, cell arrays "kind" (StrokeKind),
 ///   "view" (ViewKind) and "number" (among the strokes of that kind in that view; both -1 for a
 ///   border that no stroke asks for);

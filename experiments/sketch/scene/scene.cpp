@@ -171,6 +171,18 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
   return files;
 }
 
+void require_one_source(const SketchSceneOptions& options) {
+  const bool drawn = !options.drawing.empty() || options.known;
+  const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
+                    options.closed_form.has_value() + options.layers.has_value() +
+                    options.solid.has_value();
+  if (given == 1) return;
+  throw Error(std::to_string(given) + " of them are given",
+              "scene.drawing (or scene.known), scene.surface, scene.synthetic, "
+              "scene.closed_form, scene.layers and scene.solid",
+              "one");
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, SketchSceneOptions& o) {
@@ -249,16 +261,7 @@ OneViewInput SketchScene::photo_input() const {
 std::shared_ptr<SketchScene> load_sketch_scene(const SketchSceneOptions& options,
                                                const std::filesystem::path& folder,
                                                std::uint64_t seed) {
-  const bool drawn = !options.drawing.empty() || options.known;
-  const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
-                    options.closed_form.has_value() + options.layers.has_value() +
-                    options.solid.has_value();
-  if (given != 1) {
-    throw Error(std::to_string(given) + " of them are given",
-                "scene.drawing (or scene.known), scene.surface, scene.synthetic, "
-                "scene.closed_form, scene.layers and scene.solid",
-                "one");
-  }
+  require_one_source(options);
   auto scene = std::make_shared<SketchScene>();
   scene->input.align = options.align;
   scene->input.hull = options.hull;

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "models/sketch/drawing/outlined_view.h"
 #include "models/sketch/sections/section_report.h"
 #include "models/sketch/sections/top_sections.h"
 #include "models/sketch/sections/tube_sections.h"
 #include "models/sketch/surface/nets.h"
-#include "models/sketch/surface/visual_hull.h"
 
 namespace geoprior::sketch {
 

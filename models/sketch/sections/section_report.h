@@ -5,6 +5,13 @@
 
 namespace geoprior::sketch {
 
+/// What a section of the hull is.
+enum class HullSections {
+  automatic,  ///< by what is drawn, see hull_sections.h
+  box,        ///< all that the views see: a rectangle, where the third view does not cut it
+  top,        ///< the outline of the top view, scaled to the widths of front and side at a height
+};
+
 /// What the sections of a hull are, and why.
 struct SectionReport {
   bool from_top = false;     ///< all are the top view's outline, scaled

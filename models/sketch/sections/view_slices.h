@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/sketch/surface/visual_hull.h"
+#include "models/sketch/drawing/outlined_view.h"
 
 namespace geoprior::sketch {
 

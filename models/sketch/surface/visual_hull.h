@@ -7,17 +7,10 @@
 #include "core/mesh.h"
 #include "core/options.h"
 #include "models/sketch/drawing/drawing.h"
-#include "models/sketch/drawing/outline.h"
+#include "models/sketch/drawing/outlined_view.h"
 #include "models/sketch/sections/section_report.h"
 
 namespace geoprior::sketch {
-
-/// What a section of the hull is.
-enum class HullSections {
-  automatic,  ///< by what is drawn, see sections/hull_sections.h
-  box,        ///< all that the views see: a rectangle, where the third view does not cut it
-  top,        ///< the outline of the top view, scaled to the widths of front and side at a height
-};
 
 struct HullOptions {
   int triangles = 8000;
@@ -32,17 +25,6 @@ struct SilhouettePlace {
   Eigen::Vector2d normal{0, 0};  ///< outward, in the view
 };
 
-/// A view with its silhouette.
-struct OutlinedView {
-  ViewKind kind = ViewKind::front;
-  Outline outline;
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< view_frame(kind)
-
-  [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& x) const {
-    return frame.topRows<2>() * x;
-  }
-};
-
 /// All points that every view sees inside of its silhouette, meshed: closed, a manifold.
 struct VisualHull {
   TriMesh mesh;
@@ -52,10 +34,6 @@ struct VisualHull {
   double spacing = 0;  ///< of the grid that it was meshed on: about the length of an edge (m)
   SectionReport sections;
 };
-
-/// Views other than `photo`, with their silhouettes as outlines.
-/// @throws Error  when a view has no silhouette or more than one
-std::vector<OutlinedView> outlined_views(const Drawing& aligned);
 
 /// The hull as the zero set of max over the views of their signed distances, by surface nets, then
 /// moved onto the silhouettes exactly: a vertex goes to every silhouette that the surface is on in
