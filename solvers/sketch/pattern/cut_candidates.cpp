@@ -394,6 +394,78 @@ void CandidateFinder::add_loops(const Eigen::VectorXd& value, double low, double
   }
 }
 
+/// The image of a cut on a piece whose vertices and edges are the images of those of its own, to
+/// round-off; empty where they are not.
+std::vector<SurfacePath> vertex_by_vertex(const TriMesh& from, const TriMesh& to,
+                                          const std::vector<SurfacePath>& cut,
+                                          const MirrorAxis& mirror) {
+  const double near = 1e-6 * mean_edge(from);
+  const EdgeConnectivity edges(to.F);
+  const auto image = [&](int v) {
+    Eigen::Index best = 0;
+    const double d =
+        (to.V.rowwise() - mirror.mirrored(from.V.row(v))).rowwise().squaredNorm().minCoeff(&best);
+    return d < near * near ? static_cast<int>(best) : -1;
+  };
+  std::vector<SurfacePath> images;
+  for (const SurfacePath& path : cut) {
+    SurfacePath& mirrored = images.emplace_back();
+    for (const EdgePoint& point : path) {
+      const int a = image(point.edge[0]), b = image(point.edge[1]);
+      if (a < 0 || b < 0 || (a != b && !edges.find(a, b))) return {};
+      mirrored.push_back(a <= b ? EdgePoint{{a, b}, point.share}
+                                : EdgePoint{{b, a}, 1 - point.share});
+    }
+  }
+  return images;
+}
+
+Eigen::MatrixX3d image_of(const SurfacePath& path, const Eigen::MatrixX3d& V,
+                          const MirrorAxis& mirror) {
+  Eigen::MatrixX3d image(path.size(), 3);
+  for (std::size_t i = 0; i < path.size(); ++i) image.row(i) = mirror.mirrored(path[i].position(V));
+  return image;
+}
+
+/// The path that follows a line at a price that grows with the distance from it, between the
+/// vertices nearest to its ends; a closed line is followed in four stretches.
+SurfacePath path_near(const TriMesh& mesh, const Eigen::MatrixX3d& line, Eigen::VectorXd price) {
+  const double edge = mean_edge(mesh);
+  const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Eigen::RowVector3d centre =
+        (mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2))) / 3;
+    price(t) *= 1 + (line.rowwise() - centre).rowwise().squaredNorm().minCoeff() / (edge * edge);
+  }
+  const SurfacePaths paths(mesh, price);
+  const bool closed = line.row(0) == line.row(line.rows() - 1);
+  const int stretches = closed ? 4 : 1;
+  // Only the ends of an open line may lie on the border.
+  const auto nearest = [&](Eigen::Index i, bool is_end) {
+    int best = -1;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      if (border[v] && (closed || !is_end)) continue;
+      if (best < 0 || (mesh.V.row(v) - line.row(i)).squaredNorm() <
+                          (mesh.V.row(best) - line.row(i)).squaredNorm())
+        best = v;
+    }
+    return best;
+  };
+  SurfacePath whole;
+  int from = nearest(0, true);
+  for (int s = 1; s <= stretches; ++s) {
+    const int to = nearest((line.rows() - 1) * s / stretches, s == stretches);
+    if (to == from || to < 0) continue;
+    std::vector<char> targets(mesh.vertex_count(), 0);
+    targets[to] = 1;
+    const SurfacePath stretch = paths.shortest(from, targets);
+    if (stretch.empty()) return {};
+    whole.insert(whole.end(), stretch.begin() + (whole.empty() ? 0 : 1), stretch.end());
+    from = to;
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::optional<MirrorAxis> mirror_axis(const TriMesh& surface) {
@@ -418,52 +490,20 @@ std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
   return CandidateFinder(piece, options).find();
 }
 
-std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,
-                                      const std::vector<Eigen::MatrixX3d>& lines,
+std::vector<SurfacePath> mirrored_cut(const CutPiece& piece, const CutPiece& other,
+                                      const std::vector<SurfacePath>& cut,
                                       const CutCandidateOptions& options) {
-  const MirrorAxis& mirror = *options.mirror;
-  const TriMesh& mesh = piece.mesh;
-  const double edge = mean_edge(mesh);
-  const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
-  std::vector<SurfacePath> cut;
-  for (const Eigen::MatrixX3d& line : lines) {
-    Eigen::MatrixX3d image = line;
-    for (Eigen::Index i = 0; i < line.rows(); ++i) image.row(i) = mirror.mirrored(line.row(i));
-    const bool closed = line.row(0) == line.row(line.rows() - 1);
-    const int stretches = closed ? 4 : 1;
-    Eigen::VectorXd price = crease_price(mesh, options.crease);
-    for (int t = 0; closed && t < mesh.triangle_count(); ++t) {
-      const Eigen::RowVector3d centre =
-          (mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2))) / 3;
-      price(t) *= 1 + (image.rowwise() - centre).rowwise().squaredNorm().minCoeff() / (edge * edge);
-    }
-    const SurfacePaths paths(mesh, price);
-    // Only the ends of a line may lie on the border.
-    const auto nearest = [&](Eigen::Index i, bool is_end) {
-      int best = -1;
-      for (int v = 0; v < mesh.vertex_count(); ++v) {
-        if (border[v] && !is_end) continue;
-        if (best < 0 || (mesh.V.row(v) - image.row(i)).squaredNorm() <
-                            (mesh.V.row(best) - image.row(i)).squaredNorm())
-          best = v;
-      }
-      return best;
-    };
-    SurfacePath whole;
-    int from = nearest(0, true);
-    for (int s = 1; s <= stretches; ++s) {
-      const int to = nearest((image.rows() - 1) * s / stretches, s == stretches);
-      if (to == from || to < 0) continue;
-      std::vector<char> targets(mesh.vertex_count(), 0);
-      targets[to] = 1;
-      const SurfacePath stretch = paths.shortest(from, targets);
-      if (stretch.empty()) return {};
-      whole.insert(whole.end(), stretch.begin() + (whole.empty() ? 0 : 1), stretch.end());
-      from = to;
-    }
-    cut.push_back(std::move(whole));
+  std::vector<SurfacePath> image = vertex_by_vertex(piece.mesh, other.mesh, cut, *options.mirror);
+  if (!image.empty()) return image;
+  for (const SurfacePath& path : cut) {
+    SurfacePath near = path_near(other.mesh, image_of(path, piece.mesh.V, *options.mirror),
+                                 crease_price(other.mesh, options.crease));
+    if (near.empty()) return {};
+    image.push_back(std::move(near));
   }
-  return cut;
+  std::vector<SurfacePath> fair;
+  if (options.fair) fair = faired_cut(other.mesh, image, kFairCut * mean_edge(other.mesh));
+  return fair.empty() ? image : fair;
 }
 
 SurfacePath bridge(const CutPiece& piece, const std::optional<MirrorAxis>& mirror) {

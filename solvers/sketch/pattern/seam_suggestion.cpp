@@ -245,7 +245,8 @@ SuggestedSeam GreedySuggester::suggestion_of(const std::vector<Panel>& pieces,
   suggestion.is_dart = best.parts == 1;
   if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
     const std::vector<SurfacePath> cut =
-        mirrored_cut(pieces[*image].piece, best.lines.points, {options_.crease, trial_.mirror});
+        mirrored_cut(pieces[p].piece, pieces[*image].piece, best.cut,
+                     {options_.crease, trial_.mirror, options_.fair});
     std::optional<Scored> mirrored;
     if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
     if (mirrored) take(*image, mirrored->trial);
