@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "core/geometry/topology.h"
@@ -20,9 +21,13 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr std::array<int, 6> kStars{1, 2, 3, 4, 6, 8};
-constexpr double kMostDensity = 20;    ///< of |defect|, over its mean
-constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high counts as the same place
-constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
+constexpr std::array<int, 2> kDarts{1, 2};  ///< from places that are not the highest
+constexpr int kFurtherPlaces = 3;
+constexpr double kLeastFurther = 0.25;  ///< of the height of the first
+constexpr double kPlacesApart = 6;      ///< edges
+constexpr double kMostDensity = 20;     ///< of |defect|, over its mean
+constexpr double kPlateau = 0.98;       ///< of an extreme: what is as high counts as the same place
+constexpr double kLeastExtreme = 0.2;   ///< of the largest scale, below which a place is none
 
 constexpr double kFairCut = 2;       ///< scale at which cuts are fair (edges)
 constexpr double kShortestLine = 8;  ///< of a cut around a part (edges)
@@ -136,7 +141,9 @@ class CandidateFinder {
     for (const double sign : {1.0, -1.0}) {
       const Eigen::VectorXd height = sign * scale_;
       if (!(height.maxCoeff() > kLeastExtreme * largest)) continue;
-      add_stars(height);
+      const int first = place_of(height);
+      add_stars(height, first, kStars);
+      for (const int place : further_places(height, first)) add_stars(height, place, kDarts);
       const double top = height.maxCoeff();
       for (const auto& band : kBands) add_loops(height, band[0] * top, band[1] * top);
     }
@@ -150,7 +157,8 @@ class CandidateFinder {
   [[nodiscard]] int nearest_vertex(const Eigen::RowVector3d& x,
                                    const std::vector<int>& among) const;
   [[nodiscard]] int place_of(const Eigen::VectorXd& height) const;
-  void add_stars(const Eigen::VectorXd& height);
+  [[nodiscard]] std::vector<int> further_places(const Eigen::VectorXd& height, int first) const;
+  void add_stars(const Eigen::VectorXd& height, int from, std::span<const int> counts);
   void add_loops(const Eigen::VectorXd& value, double low, double high);
   void add_parallel_loops();
   void add_parts();
@@ -307,8 +315,30 @@ void CandidateFinder::add_level(const Eigen::VectorXd& value) {
   found_.push_back(std::move(lines));
 }
 
-void CandidateFinder::add_stars(const Eigen::VectorXd& height) {
-  const int from = place_of(height);
+/// Other local maxima, the highest first, apart from each other and from the first.
+std::vector<int> CandidateFinder::further_places(const Eigen::VectorXd& height, int first) const {
+  const VertexGraph rings = one_rings(mesh_.F, mesh_.vertex_count());
+  std::vector<int> tops;
+  for (int v = 0; v < mesh_.vertex_count(); ++v) {
+    if (height(v) < kLeastFurther * height(first)) continue;
+    bool is_top = true;
+    for (const int w : rings.of(v)) is_top = is_top && height(w) <= height(v);
+    if (is_top) tops.push_back(v);
+  }
+  std::stable_sort(tops.begin(), tops.end(), [&](int a, int b) { return height(a) > height(b); });
+  std::vector<int> places{first};
+  for (const int v : tops) {
+    const bool apart = std::all_of(places.begin(), places.end(), [&](int other) {
+      return (mesh_.V.row(v) - mesh_.V.row(other)).norm() > kPlacesApart * edge_;
+    });
+    if (apart && std::ssize(places) <= kFurtherPlaces) places.push_back(v);
+  }
+  places.erase(places.begin());
+  return places;
+}
+
+void CandidateFinder::add_stars(const Eigen::VectorXd& height, int from,
+                                std::span<const int> counts) {
   const bool on_plane = options_.mirror && std::abs(mesh_.V(from, options_.mirror->axis) -
                                                     options_.mirror->at) < 1.5 * edge_;
   int twin = -1;
@@ -325,7 +355,7 @@ void CandidateFinder::add_stars(const Eigen::VectorXd& height) {
   int start = on_plane ? border_start(from, true) : nearest;
   if (start < 0) start = nearest;
   if (start < 0) return;
-  for (const int count : kStars) {
+  for (const int count : counts) {
     std::vector<SurfacePath> paths = star(from, start, count);
     if (twin >= 0 && !paths.empty()) {
       const std::vector<SurfacePath> other = star(twin, border_start(twin, false), count);

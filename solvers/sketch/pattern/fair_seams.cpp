@@ -114,9 +114,11 @@ class SeamFairing {
 
   Eigen::MatrixX3d fair() {
     find_near();
+    std::vector<Eigen::MatrixX3d> places;
+    for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain));
     for (int step = 0; step < kSteps && !chains_.empty(); ++step) {
       before_ = X_;
-      for (const std::vector<int>& chain : chains_) slide(chain);
+      for (std::size_t i = 0; i < chains_.size(); ++i) slide(chains_[i], places[i]);
       for (int pass = 0; pass < kFollowPasses; ++pass) follow();
       undo_turned();
     }
@@ -129,22 +131,25 @@ class SeamFairing {
     return position_of(at, surface_.V, surface_.F).transpose();
   }
 
-  /// A step towards evenly spaced points of the line as it would be fair.
-  void slide(const std::vector<int>& chain) {
-    const Eigen::MatrixX3d line = X_(chain, Eigen::all);
-    const Eigen::MatrixX3d fair = faired_line(line, width_);
-    const std::vector<double> on_fair = arc_lengths(fair);
-    const auto last = static_cast<double>(chain.size() - 1);
+  /// Evenly spaced points of a line made fair, where its vertices are to go.
+  [[nodiscard]] Eigen::MatrixX3d places_of(const std::vector<int>& chain) const {
+    const Eigen::MatrixX3d fair = faired_line(surface_.V(chain, Eigen::all), width_);
+    const std::vector<double> along = arc_lengths(fair);
     std::vector<double> places;
     for (std::size_t i = 0; i < chain.size(); ++i)
-      places.push_back(static_cast<double>(i) / last * on_fair.back());
-    const Eigen::MatrixX3d target = at_lengths(fair, on_fair, places);
+      places.push_back(static_cast<double>(i) / static_cast<double>(chain.size() - 1) *
+                       along.back());
+    return at_lengths(fair, along, places);
+  }
+
+  void slide(const std::vector<int>& chain, const Eigen::MatrixX3d& places) {
     const bool closed = chain.front() == chain.back();
-    for (std::size_t i = closed ? 1 : 0; i < chain.size(); ++i) {
-      if (stays_[chain[i]] || (!closed && (i == 0 || i + 1 == chain.size()))) continue;
-      Eigen::RowVector3d move = target.row(i) - line.row(i);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const int v = chain[i];
+      if (stays_[v] || (!closed && i + 1 == chain.size())) continue;
+      Eigen::RowVector3d move = places.row(static_cast<Eigen::Index>(i)) - X_.row(v);
       move *= std::min(1.0, kMostMove * width_ / kFairWidth / std::max(move.norm(), 1e-300));
-      X_.row(chain[i]) = on_surface(line.row(i) + move);
+      X_.row(v) = on_surface(X_.row(v) + move);
     }
   }
 

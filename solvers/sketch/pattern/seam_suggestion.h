@@ -21,6 +21,8 @@ struct SeamSuggestionOptions {
   double share = 0.95;
   int count = 3;
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
+  double piece_weight = 0.08;   ///< what a piece more costs, in removed error
+  int plans = 3;                ///< followed at once
   double crease = 0.3;
   double min_part = 0.02;
   bool fair = true;
