@@ -231,7 +231,7 @@ class SketchFrames final : public FrameModel {
     std::vector<SeamEdge> slide, stay;
     for (const SeamEdge& e : seam_edges(prepared_.surface))
       (seams[e.seam].view < 0 ? slide : stay).push_back(e);
-    if (getenv("NOFAIR") || !suggester_.fair || slide.empty()) return method_->positions();
+    if (!suggester_.fair || slide.empty()) return method_->positions();
     return suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide, stay);
   }
 

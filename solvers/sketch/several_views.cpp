@@ -226,7 +226,7 @@ void describe(OptionVisitor& v, SuggestedSeamsOptions& o) {
       "apply", o.apply,
       {.doc = "number of suggestions that are cut before iterations go on", .min = 0, .max = 100});
   v.value("iterations", o.iterations,
-          {.doc = "iterations after suggestions were cut", .min = 0, .max = 1000});
+          {.doc = "iterations after suggestions were cut", .min = 1, .max = 1000});
 }
 
 void describe(OptionVisitor& v, SeveralViewsOptions& o) {

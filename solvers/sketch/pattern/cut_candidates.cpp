@@ -29,7 +29,7 @@ constexpr double kMostDensity = 20;     ///< of |defect|, over its mean
 constexpr double kPlateau = 0.98;       ///< of an extreme: what is as high counts as the same place
 constexpr double kLeastExtreme = 0.2;   ///< of the largest scale, below which a place is none
 
-constexpr double kFairCut = 2;       ///< scale at which cuts are fair (edges)
+constexpr double kFairCut = 4;       ///< scale at which cuts are fair (edges)
 constexpr double kShortestLine = 8;  ///< of a cut around a part (edges)
 constexpr int kMostSlopeParts = 5;   ///< of constant slope
 

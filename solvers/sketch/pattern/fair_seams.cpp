@@ -20,10 +20,11 @@ namespace {
 
 constexpr int kSamplesOfWidth = 4;
 constexpr int kMostSamples = 600;  ///< of a line
-constexpr double kFairWidth = 4;   ///< of seams, in mean edges of the surface
+constexpr double kFairWidth = 3;   ///< of seams, in mean edges of the surface
 constexpr int kFollowRings = 3;    ///< about a seam, whose vertices follow it
 constexpr int kSteps = 24;
-constexpr int kFollowPasses = 2;      ///< in every step
+constexpr int kEvenPasses = 8;        ///< of steps along a seam
+constexpr int kFollowPasses = 4;      ///< in every step
 constexpr double kMostMove = 0.25;    ///< of a vertex of a seam in a step, in mean edges
 constexpr double kLeastTurned = 0.3;  ///< cosine between a triangle's normal before and after
 constexpr double kLeastArea = 0.1;    ///< of a triangle, over its area before and the mean
@@ -119,7 +120,7 @@ class SeamFairing {
     for (int step = 0; step < kSteps && !chains_.empty(); ++step) {
       before_ = X_;
       for (std::size_t i = 0; i < chains_.size(); ++i) slide(chains_[i], places[i]);
-      for (int pass = 0; pass < kFollowPasses; ++pass) follow();
+      follow();
       undo_turned();
     }
     return std::move(X_);
@@ -131,15 +132,21 @@ class SeamFairing {
     return position_of(at, surface_.V, surface_.F).transpose();
   }
 
-  /// Evenly spaced points of a line made fair, where its vertices are to go.
+  /// Points of a line made fair, where its vertices are to go: as far along it as they are, but for
+  /// short and long steps that are evened out.
   [[nodiscard]] Eigen::MatrixX3d places_of(const std::vector<int>& chain) const {
-    const Eigen::MatrixX3d fair = faired_line(surface_.V(chain, Eigen::all), width_);
-    const std::vector<double> along = arc_lengths(fair);
-    std::vector<double> places;
-    for (std::size_t i = 0; i < chain.size(); ++i)
-      places.push_back(static_cast<double>(i) / static_cast<double>(chain.size() - 1) *
-                       along.back());
-    return at_lengths(fair, along, places);
+    const Eigen::MatrixX3d line = surface_.V(chain, Eigen::all);
+    const Eigen::MatrixX3d fair = faired_line(line, width_);
+    const std::vector<double> on_fair = arc_lengths(fair);
+    std::vector<double> places = arc_lengths(line);
+    const double scale = on_fair.back() / places.back();
+    for (double& s : places) s *= scale;
+    for (int pass = 0; pass < kEvenPasses; ++pass) {
+      const std::vector<double> before = places;
+      for (std::size_t i = 1; i + 1 < places.size(); ++i)
+        places[i] = (before[i - 1] + 2 * before[i] + before[i + 1]) / 4;
+    }
+    return at_lengths(fair, on_fair, places);
   }
 
   void slide(const std::vector<int>& chain, const Eigen::MatrixX3d& places) {
@@ -173,17 +180,22 @@ class SeamFairing {
     }
   }
 
-  /// Vertices near to seams go half of the way to the middle of their neighbours.
+  /// Vertices near to seams move by the mean of what their neighbours move by; the farther ones and
+  /// those that stay do not move.
   void follow() {
-    for (const int v : near_) {
-      Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-      int count = 0;
-      for (const int w : rings_.of(v)) {
-        sum += X_.row(w);
-        ++count;
+    Eigen::MatrixX3d moves = X_ - surface_.V;
+    for (int pass = 0; pass < kFollowPasses; ++pass) {
+      for (const int v : near_) {
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+        int count = 0;
+        for (const int w : rings_.of(v)) {
+          sum += moves.row(w);
+          ++count;
+        }
+        moves.row(v) = sum / count;
       }
-      X_.row(v) = on_surface((X_.row(v) + sum / count) / 2);
     }
+    for (const int v : near_) X_.row(v) = on_surface(surface_.V.row(v) + moves.row(v));
   }
 
   /// Takes back the step of every triangle that it turned over or left without area.

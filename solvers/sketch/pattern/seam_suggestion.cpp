@@ -202,26 +202,6 @@ std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(const Panel& p
   std::stable_sort(best.begin(), best.end(),
                    [](const Scored& a, const Scored& b) { return a.score > b.score; });
   keep_apart(best);
-  if (getenv("DBG")) {
-    fprintf(stderr, "DBG piece area %.4f of %.4f strain %.5f within %.3f candidates %d\n",
-            before.flat.area, whole_, before.flat.strain / before.flat.area,
-            before.flat.within / before.flat.area, (int)all.size());
-    for (std::size_t i = 0; i < std::min<std::size_t>(best.size(), 8); ++i) {
-      const auto& t = best[i].trial;
-      Eigen::RowVector3d lo = Eigen::RowVector3d::Constant(1e9), hi = -lo;
-      for (auto& l : t.lines.points) {
-        lo = lo.cwiseMin(l.colwise().minCoeff());
-        hi = hi.cwiseMax(l.colwise().maxCoeff());
-      }
-      fprintf(stderr,
-              "DBG   score %.3f removed %.3f within %.3f len %.3f open %.3f parts %d least %.4f "
-              "lines %d box %.3f..%.3f %.3f..%.3f %.3f..%.3f\n",
-              best[i].score, (before.flat.strain - t.flat.strain) / before.flat.strain,
-              t.flat.within / t.flat.area, t.lines.length, t.opening_length - before.opening_length,
-              t.parts, t.least_part / whole_, (int)t.lines.points.size(), lo[0], hi[0], lo[1],
-              hi[1], lo[2], hi[2]);
-    }
-  }
   if (best.empty() || options_.rule == SuggestionRule::measured) return best;
   const std::vector<SurfacePath> by_lot =
       random_cuts(piece.piece.mesh, best.front().trial.lines.length, options_.seed);
