@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace geoprior::sketch {
 namespace {
@@ -16,12 +18,13 @@ class PathSplitter {
 
   std::optional<SurfaceSplit> split(std::span<const SurfacePath> paths) {
     for (const SurfacePath& path : paths) add_nodes(path);
-    for (const Edge& e : split_.path) wanted_.insert(e);
     split_triangles();
     const EdgeConnectivity made(split_.triangles);
-    for (const Edge& e : split_.path) {
+    for (const Edge& e : wanted_) {
       if (!made.find(e[0], e[1])) return {};
     }
+    straighten(made);
+    for (const std::vector<int>& line : lines_) add_edges(line);
     return std::move(split_);
   }
 
@@ -38,15 +41,46 @@ class PathSplitter {
   }
 
   void add_nodes(const SurfacePath& path) {
-    int before = -1;
+    std::vector<int>& line = lines_.emplace_back();
     for (const EdgePoint& point : path) {
       const int node = node_of(point);
-      if (before >= 0 && node != before) {
-        const Edge e = undirected(before, node);
-        if (std::find(split_.path.begin(), split_.path.end(), e) == split_.path.end())
-          split_.path.push_back(e);
+      if (!line.empty() && node == line.back()) continue;
+      if (!line.empty()) wanted_.insert(undirected(line.back(), node));
+      line.push_back(node);
+    }
+  }
+
+  void add_edges(const std::vector<int>& line) {
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Edge e = undirected(line[i - 1], line[i]);
+      if (std::find(split_.path.begin(), split_.path.end(), e) == split_.path.end())
+        split_.path.push_back(e);
+    }
+  }
+
+  /// Where a path runs along two sides of a triangle, lets it run along the third.
+  void straighten(const EdgeConnectivity& made) {
+    std::map<int, int> uses;
+    for (const std::vector<int>& line : lines_) {
+      for (const int node : line) ++uses[node];
+    }
+    const auto is_triangle = [&](int a, int b, int c) {
+      const auto edge = made.find(a, c);
+      if (!edge || a == c) return false;
+      return std::ranges::any_of(made.half_edges(*edge), [&](int h) {
+        const auto corners = split_.triangles.row(h / 3);
+        return corners[0] == b || corners[1] == b || corners[2] == b;
+      });
+    };
+    for (std::vector<int>& line : lines_) {
+      for (std::size_t i = 1; i + 1 < line.size() && line.size() > 4;) {
+        if (uses[line[i]] == 1 && is_triangle(line[i - 1], line[i], line[i + 1])) {
+          line.erase(line.begin() + static_cast<std::ptrdiff_t>(i));
+          i = std::max<std::size_t>(1, i - 1);
+        } else {
+          ++i;
+        }
       }
-      before = node;
     }
   }
 
@@ -90,8 +124,9 @@ class PathSplitter {
 
   const TriMesh& mesh_;
   EdgeConnectivity edges_;
-  std::vector<int> node_;  ///< new vertex of each edge, -1: none
-  std::set<Edge> wanted_;  ///< edges of the paths
+  std::vector<int> node_;                ///< new vertex of each edge, -1: none
+  std::vector<std::vector<int>> lines_;  ///< vertices along the paths
+  std::set<Edge> wanted_;                ///< edges of the paths as they were given
   SurfaceSplit split_;
 };
 

@@ -26,7 +26,9 @@ struct SurfaceSplit {
 
 /// Splits triangles where paths cross them. Where a path passes nearer to a vertex than a sixth of
 /// the edge, the vertex stands in for the crossing: slivers would spoil what is solved on the
-/// surface. An edge is split once: a second path joins the first one there.
+/// surface. An edge is split once: a second path joins the first one there. Where
+/// a path would run along two sides of a triangle it takes the third: nothing could make it
+/// straight otherwise.
 ///
 /// New vertices are numbered along the paths, so that equal paths over two meshes of different
 /// numbering split them alike.

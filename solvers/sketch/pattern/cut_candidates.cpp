@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "core/geometry/topology.h"
@@ -20,11 +21,15 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr std::array<int, 6> kStars{1, 2, 3, 4, 6, 8};
-constexpr double kMostDensity = 20;    ///< of |defect|, over its mean
-constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high counts as the same place
-constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
+constexpr std::array<int, 2> kDarts{1, 2};  ///< from places that are not the highest
+constexpr int kFurtherPlaces = 3;
+constexpr double kLeastFurther = 0.25;  ///< of the height of the first
+constexpr double kPlacesApart = 6;      ///< edges
+constexpr double kMostDensity = 20;     ///< of |defect|, over its mean
+constexpr double kPlateau = 0.98;       ///< of an extreme: what is as high counts as the same place
+constexpr double kLeastExtreme = 0.2;   ///< of the largest scale, below which a place is none
 
-constexpr double kFairCut = 2;       ///< scale at which cuts are fair (edges)
+constexpr double kFairCut = 4;       ///< scale at which cuts are fair (edges)
 constexpr double kShortestLine = 8;  ///< of a cut around a part (edges)
 constexpr int kMostSlopeParts = 5;   ///< of constant slope
 
@@ -136,7 +141,9 @@ class CandidateFinder {
     for (const double sign : {1.0, -1.0}) {
       const Eigen::VectorXd height = sign * scale_;
       if (!(height.maxCoeff() > kLeastExtreme * largest)) continue;
-      add_stars(height);
+      const int first = place_of(height);
+      add_stars(height, first, kStars);
+      for (const int place : further_places(height, first)) add_stars(height, place, kDarts);
       const double top = height.maxCoeff();
       for (const auto& band : kBands) add_loops(height, band[0] * top, band[1] * top);
     }
@@ -150,7 +157,8 @@ class CandidateFinder {
   [[nodiscard]] int nearest_vertex(const Eigen::RowVector3d& x,
                                    const std::vector<int>& among) const;
   [[nodiscard]] int place_of(const Eigen::VectorXd& height) const;
-  void add_stars(const Eigen::VectorXd& height);
+  [[nodiscard]] std::vector<int> further_places(const Eigen::VectorXd& height, int first) const;
+  void add_stars(const Eigen::VectorXd& height, int from, std::span<const int> counts);
   void add_loops(const Eigen::VectorXd& value, double low, double high);
   void add_parallel_loops();
   void add_parts();
@@ -307,8 +315,30 @@ void CandidateFinder::add_level(const Eigen::VectorXd& value) {
   found_.push_back(std::move(lines));
 }
 
-void CandidateFinder::add_stars(const Eigen::VectorXd& height) {
-  const int from = place_of(height);
+/// Other local maxima, the highest first, apart from each other and from the first.
+std::vector<int> CandidateFinder::further_places(const Eigen::VectorXd& height, int first) const {
+  const VertexGraph rings = one_rings(mesh_.F, mesh_.vertex_count());
+  std::vector<int> tops;
+  for (int v = 0; v < mesh_.vertex_count(); ++v) {
+    if (height(v) < kLeastFurther * height(first)) continue;
+    bool is_top = true;
+    for (const int w : rings.of(v)) is_top = is_top && height(w) <= height(v);
+    if (is_top) tops.push_back(v);
+  }
+  std::stable_sort(tops.begin(), tops.end(), [&](int a, int b) { return height(a) > height(b); });
+  std::vector<int> places{first};
+  for (const int v : tops) {
+    const bool apart = std::all_of(places.begin(), places.end(), [&](int other) {
+      return (mesh_.V.row(v) - mesh_.V.row(other)).norm() > kPlacesApart * edge_;
+    });
+    if (apart && std::ssize(places) <= kFurtherPlaces) places.push_back(v);
+  }
+  places.erase(places.begin());
+  return places;
+}
+
+void CandidateFinder::add_stars(const Eigen::VectorXd& height, int from,
+                                std::span<const int> counts) {
   const bool on_plane = options_.mirror && std::abs(mesh_.V(from, options_.mirror->axis) -
                                                     options_.mirror->at) < 1.5 * edge_;
   int twin = -1;
@@ -325,7 +355,7 @@ void CandidateFinder::add_stars(const Eigen::VectorXd& height) {
   int start = on_plane ? border_start(from, true) : nearest;
   if (start < 0) start = nearest;
   if (start < 0) return;
-  for (const int count : kStars) {
+  for (const int count : counts) {
     std::vector<SurfacePath> paths = star(from, start, count);
     if (twin >= 0 && !paths.empty()) {
       const std::vector<SurfacePath> other = star(twin, border_start(twin, false), count);
@@ -394,6 +424,78 @@ void CandidateFinder::add_loops(const Eigen::VectorXd& value, double low, double
   }
 }
 
+/// The image of a cut on a piece whose vertices and edges are the images of those of its own, to
+/// round-off; empty where they are not.
+std::vector<SurfacePath> vertex_by_vertex(const TriMesh& from, const TriMesh& to,
+                                          const std::vector<SurfacePath>& cut,
+                                          const MirrorAxis& mirror) {
+  const double near = 1e-6 * mean_edge(from);
+  const EdgeConnectivity edges(to.F);
+  const auto image = [&](int v) {
+    Eigen::Index best = 0;
+    const double d =
+        (to.V.rowwise() - mirror.mirrored(from.V.row(v))).rowwise().squaredNorm().minCoeff(&best);
+    return d < near * near ? static_cast<int>(best) : -1;
+  };
+  std::vector<SurfacePath> images;
+  for (const SurfacePath& path : cut) {
+    SurfacePath& mirrored = images.emplace_back();
+    for (const EdgePoint& point : path) {
+      const int a = image(point.edge[0]), b = image(point.edge[1]);
+      if (a < 0 || b < 0 || (a != b && !edges.find(a, b))) return {};
+      mirrored.push_back(a <= b ? EdgePoint{{a, b}, point.share}
+                                : EdgePoint{{b, a}, 1 - point.share});
+    }
+  }
+  return images;
+}
+
+Eigen::MatrixX3d image_of(const SurfacePath& path, const Eigen::MatrixX3d& V,
+                          const MirrorAxis& mirror) {
+  Eigen::MatrixX3d image(path.size(), 3);
+  for (std::size_t i = 0; i < path.size(); ++i) image.row(i) = mirror.mirrored(path[i].position(V));
+  return image;
+}
+
+/// The path that follows a line at a price that grows with the distance from it, between the
+/// vertices nearest to its ends; a closed line is followed in four stretches.
+SurfacePath path_near(const TriMesh& mesh, const Eigen::MatrixX3d& line, Eigen::VectorXd price) {
+  const double edge = mean_edge(mesh);
+  const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Eigen::RowVector3d centre =
+        (mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2))) / 3;
+    price(t) *= 1 + (line.rowwise() - centre).rowwise().squaredNorm().minCoeff() / (edge * edge);
+  }
+  const SurfacePaths paths(mesh, price);
+  const bool closed = line.row(0) == line.row(line.rows() - 1);
+  const int stretches = closed ? 4 : 1;
+  // Only the ends of an open line may lie on the border.
+  const auto nearest = [&](Eigen::Index i, bool is_end) {
+    int best = -1;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      if (border[v] && (closed || !is_end)) continue;
+      if (best < 0 || (mesh.V.row(v) - line.row(i)).squaredNorm() <
+                          (mesh.V.row(best) - line.row(i)).squaredNorm())
+        best = v;
+    }
+    return best;
+  };
+  SurfacePath whole;
+  int from = nearest(0, true);
+  for (int s = 1; s <= stretches; ++s) {
+    const int to = nearest((line.rows() - 1) * s / stretches, s == stretches);
+    if (to == from || to < 0) continue;
+    std::vector<char> targets(mesh.vertex_count(), 0);
+    targets[to] = 1;
+    const SurfacePath stretch = paths.shortest(from, targets);
+    if (stretch.empty()) return {};
+    whole.insert(whole.end(), stretch.begin() + (whole.empty() ? 0 : 1), stretch.end());
+    from = to;
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::optional<MirrorAxis> mirror_axis(const TriMesh& surface) {
@@ -418,52 +520,20 @@ std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
   return CandidateFinder(piece, options).find();
 }
 
-std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,
-                                      const std::vector<Eigen::MatrixX3d>& lines,
+std::vector<SurfacePath> mirrored_cut(const CutPiece& piece, const CutPiece& other,
+                                      const std::vector<SurfacePath>& cut,
                                       const CutCandidateOptions& options) {
-  const MirrorAxis& mirror = *options.mirror;
-  const TriMesh& mesh = piece.mesh;
-  const double edge = mean_edge(mesh);
-  const std::vector<bool> border = boundary_vertices(mesh.F, mesh.vertex_count());
-  std::vector<SurfacePath> cut;
-  for (const Eigen::MatrixX3d& line : lines) {
-    Eigen::MatrixX3d image = line;
-    for (Eigen::Index i = 0; i < line.rows(); ++i) image.row(i) = mirror.mirrored(line.row(i));
-    const bool closed = line.row(0) == line.row(line.rows() - 1);
-    const int stretches = closed ? 4 : 1;
-    Eigen::VectorXd price = crease_price(mesh, options.crease);
-    for (int t = 0; closed && t < mesh.triangle_count(); ++t) {
-      const Eigen::RowVector3d centre =
-          (mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2))) / 3;
-      price(t) *= 1 + (image.rowwise() - centre).rowwise().squaredNorm().minCoeff() / (edge * edge);
-    }
-    const SurfacePaths paths(mesh, price);
-    // Only the ends of a line may lie on the border.
-    const auto nearest = [&](Eigen::Index i, bool is_end) {
-      int best = -1;
-      for (int v = 0; v < mesh.vertex_count(); ++v) {
-        if (border[v] && !is_end) continue;
-        if (best < 0 || (mesh.V.row(v) - image.row(i)).squaredNorm() <
-                            (mesh.V.row(best) - image.row(i)).squaredNorm())
-          best = v;
-      }
-      return best;
-    };
-    SurfacePath whole;
-    int from = nearest(0, true);
-    for (int s = 1; s <= stretches; ++s) {
-      const int to = nearest((image.rows() - 1) * s / stretches, s == stretches);
-      if (to == from || to < 0) continue;
-      std::vector<char> targets(mesh.vertex_count(), 0);
-      targets[to] = 1;
-      const SurfacePath stretch = paths.shortest(from, targets);
-      if (stretch.empty()) return {};
-      whole.insert(whole.end(), stretch.begin() + (whole.empty() ? 0 : 1), stretch.end());
-      from = to;
-    }
-    cut.push_back(std::move(whole));
+  std::vector<SurfacePath> image = vertex_by_vertex(piece.mesh, other.mesh, cut, *options.mirror);
+  if (!image.empty()) return image;
+  for (const SurfacePath& path : cut) {
+    SurfacePath near = path_near(other.mesh, image_of(path, piece.mesh.V, *options.mirror),
+                                 crease_price(other.mesh, options.crease));
+    if (near.empty()) return {};
+    image.push_back(std::move(near));
   }
-  return cut;
+  std::vector<SurfacePath> fair;
+  if (options.fair) fair = faired_cut(other.mesh, image, kFairCut * mean_edge(other.mesh));
+  return fair.empty() ? image : fair;
 }
 
 SurfacePath bridge(const CutPiece& piece, const std::optional<MirrorAxis>& mirror) {

@@ -50,13 +50,13 @@ struct CutCandidateOptions {
 std::vector<std::vector<SurfacePath>> cut_candidates(const CutPiece& piece,
                                                      const CutCandidateOptions& options);
 
-/// The mirror image of a cut, on the piece that is the mirror image of the cut's own: weighted
-/// paths between the vertices nearest to the images of the ends of its lines. A closed line has
-/// four such places, and a price that grows with the distance from its image.
-/// @param lines  of the cut, rows along each (m)
-/// @return       empty when a path cannot be found
-std::vector<SurfacePath> mirrored_cut(const CutPiece& piece,
-                                      const std::vector<Eigen::MatrixX3d>& lines,
+/// The mirror image of a cut of a piece, on the other piece that is its mirror image: vertex by
+/// vertex where the two meshes are each other's image, otherwise along paths whose price grows with
+/// the distance from the image, made fair where they part the other piece in two.
+/// @param options  with a mirror plane
+/// @return         empty when a path cannot be found
+std::vector<SurfacePath> mirrored_cut(const CutPiece& piece, const CutPiece& other,
+                                      const std::vector<SurfacePath>& cut,
                                       const CutCandidateOptions& options);
 
 /// A path from one border of a piece to another, which makes a disc of a ring; along the mirror

@@ -20,10 +20,14 @@ namespace {
 
 constexpr int kSamplesOfWidth = 4;
 constexpr int kMostSamples = 600;  ///< of a line
-constexpr double kFairWidth = 4;   ///< of seams, in mean edges of the surface
-constexpr int kFollowRings = 2;    ///< about a seam, whose vertices follow it
-constexpr int kFollowPasses = 8;
+constexpr double kFairWidth = 3;   ///< of seams, in mean edges of the surface
+constexpr int kFollowRings = 3;    ///< about a seam, whose vertices follow it
+constexpr int kSteps = 24;
+constexpr int kEvenPasses = 8;        ///< of steps along a seam
+constexpr int kFollowPasses = 4;      ///< in every step
+constexpr double kMostMove = 0.25;    ///< of a vertex of a seam in a step, in mean edges
 constexpr double kLeastTurned = 0.3;  ///< cosine between a triangle's normal before and after
+constexpr double kLeastArea = 0.1;    ///< of a triangle, over its area before and the mean
 
 bool is_closed(const Eigen::MatrixX3d& line) {
   return line.rows() > 3 && line.row(0) == line.row(line.rows() - 1);
@@ -92,7 +96,13 @@ class SeamFairing {
  public:
   SeamFairing(const TriMesh& surface, std::span<const SeamEdge> seams,
               std::span<const SeamEdge> kept)
-      : surface_(surface), tree_(surface), X_(surface.V), stays_(surface.vertex_count(), 0) {
+      : surface_(surface),
+        tree_(surface),
+        rings_(one_rings(surface.F, surface.vertex_count())),
+        normals_(triangle_normals(surface)),
+        areas_(triangle_areas(surface.V, surface.F)),
+        X_(surface.V),
+        stays_(surface.vertex_count(), 0) {
     const std::vector<bool> border = boundary_vertices(surface.F, surface.vertex_count());
     for (int v = 0; v < surface.vertex_count(); ++v) stays_[v] = border[v] ? 1 : 0;
     for (const SeamEdge& e : kept) stays_[e.edge[0]] = stays_[e.edge[1]] = 1;
@@ -104,9 +114,15 @@ class SeamFairing {
   }
 
   Eigen::MatrixX3d fair() {
-    for (const std::vector<int>& chain : chains_) slide(chain);
-    follow();
-    undo_turned();
+    find_near();
+    std::vector<Eigen::MatrixX3d> places;
+    for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain));
+    for (int step = 0; step < kSteps && !chains_.empty(); ++step) {
+      before_ = X_;
+      for (std::size_t i = 0; i < chains_.size(); ++i) slide(chains_[i], places[i]);
+      follow();
+      undo_turned();
+    }
     return std::move(X_);
   }
 
@@ -116,73 +132,86 @@ class SeamFairing {
     return position_of(at, surface_.V, surface_.F).transpose();
   }
 
-  void slide(const std::vector<int>& chain) {
-    Eigen::MatrixX3d line(chain.size(), 3);
-    for (std::size_t i = 0; i < chain.size(); ++i) line.row(i) = surface_.V.row(chain[i]);
+  /// Points of a line made fair, where its vertices are to go: as far along it as they are, but for
+  /// short and long steps that are evened out.
+  [[nodiscard]] Eigen::MatrixX3d places_of(const std::vector<int>& chain) const {
+    const Eigen::MatrixX3d line = surface_.V(chain, Eigen::all);
     const Eigen::MatrixX3d fair = faired_line(line, width_);
-    const std::vector<double> along = arc_lengths(line), on_fair = arc_lengths(fair);
-    std::vector<double> places;
-    for (const double s : along) places.push_back(s / along.back() * on_fair.back());
-    const Eigen::MatrixX3d moved = at_lengths(fair, on_fair, places);
-    const bool closed = chain.front() == chain.back();
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-      const bool is_end = i == 0 || i + 1 == chain.size();
-      if (stays_[chain[i]] || (is_end && !closed)) continue;
-      X_.row(chain[i]) = on_surface(moved.row(i));
+    const std::vector<double> on_fair = arc_lengths(fair);
+    std::vector<double> places = arc_lengths(line);
+    const double scale = on_fair.back() / places.back();
+    for (double& s : places) s *= scale;
+    for (int pass = 0; pass < kEvenPasses; ++pass) {
+      const std::vector<double> before = places;
+      for (std::size_t i = 1; i + 1 < places.size(); ++i)
+        places[i] = (before[i - 1] + 2 * before[i] + before[i + 1]) / 4;
     }
-    for (const int v : chain) stays_[v] = 1;
+    return at_lengths(fair, on_fair, places);
   }
 
-  /// Vertices about the seams, which have their places now, to the middle of their neighbours.
-  void follow() {
-    const VertexGraph rings = one_rings(surface_.F, surface_.vertex_count());
-    std::vector<int> near, front;
-    std::vector<char> taken(surface_.vertex_count(), 0);
-    for (const std::vector<int>& chain : chains_)
+  void slide(const std::vector<int>& chain, const Eigen::MatrixX3d& places) {
+    const bool closed = chain.front() == chain.back();
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const int v = chain[i];
+      if (stays_[v] || (!closed && i + 1 == chain.size())) continue;
+      Eigen::RowVector3d move = places.row(static_cast<Eigen::Index>(i)) - X_.row(v);
+      move *= std::min(1.0, kMostMove * width_ / kFairWidth / std::max(move.norm(), 1e-300));
+      X_.row(v) = on_surface(X_.row(v) + move);
+    }
+  }
+
+  /// Vertices about the seams, seams left out.
+  void find_near() {
+    std::vector<int> front;
+    std::vector<char> taken = stays_;
+    for (const std::vector<int>& chain : chains_) {
+      for (const int v : chain) taken[v] = 1;
       front.insert(front.end(), chain.begin(), chain.end());
-    for (const int v : front) taken[v] = 1;
+    }
     for (int ring = 0; ring < kFollowRings; ++ring) {
       std::vector<int> next;
       for (const int v : front) {
-        for (const int w : rings.of(v)) {
-          if (taken[w]) continue;
-          taken[w] = 1;
-          next.push_back(w);
+        for (const int w : rings_.of(v)) {
+          if (std::exchange(taken[w], 1) == 0) next.push_back(w);
         }
       }
-      near.insert(near.end(), next.begin(), next.end());
+      near_.insert(near_.end(), next.begin(), next.end());
       front = std::move(next);
-    }
-    for (int pass = 0; pass < kFollowPasses; ++pass) {
-      for (const int v : near) {
-        if (stays_[v]) continue;
-        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-        int count = 0;
-        for (const int w : rings.of(v)) {
-          sum += X_.row(w);
-          ++count;
-        }
-        X_.row(v) = on_surface((X_.row(v) + sum / count) / 2);
-      }
     }
   }
 
+  /// Vertices near to seams move by the mean of what their neighbours move by; the farther ones and
+  /// those that stay do not move.
+  void follow() {
+    Eigen::MatrixX3d moves = X_ - surface_.V;
+    for (int pass = 0; pass < kFollowPasses; ++pass) {
+      for (const int v : near_) {
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+        int count = 0;
+        for (const int w : rings_.of(v)) {
+          sum += moves.row(w);
+          ++count;
+        }
+        moves.row(v) = sum / count;
+      }
+    }
+    for (const int v : near_) X_.row(v) = on_surface(surface_.V.row(v) + moves.row(v));
+  }
+
+  /// Takes back the step of every triangle that it turned over or left without area.
   void undo_turned() {
-    const Eigen::MatrixX3d before = triangle_normals(surface_);
-    const Eigen::VectorXd areas = triangle_areas(surface_.V, surface_.F);
     for (bool changed = true; changed;) {
       changed = false;
       const TriMesh now{X_, surface_.F};
       const Eigen::MatrixX3d normals = triangle_normals(now);
-      const Eigen::VectorXd areas_now = triangle_areas(now.V, now.F);
+      const Eigen::VectorXd areas = triangle_areas(now.V, now.F);
       for (int t = 0; t < now.triangle_count(); ++t) {
-        if (normals.row(t).dot(before.row(t)) > kLeastTurned &&
-            areas_now(t) > 0.1 * std::min(areas(t), areas.mean()))
-          continue;
+        const double least = kLeastArea * std::min(areas_(t), areas_.mean());
+        if (normals.row(t).dot(normals_.row(t)) > kLeastTurned && areas(t) > least) continue;
         for (int k = 0; k < 3; ++k) {
           const int v = surface_.F(t, k);
-          changed = changed || X_.row(v) != surface_.V.row(v);
-          X_.row(v) = surface_.V.row(v);
+          changed = changed || X_.row(v) != before_.row(v);
+          X_.row(v) = before_.row(v);
         }
       }
     }
@@ -190,9 +219,13 @@ class SeamFairing {
 
   const TriMesh& surface_;
   TriangleTree tree_;
-  Eigen::MatrixX3d X_;
+  VertexGraph rings_;
+  Eigen::MatrixX3d normals_;  ///< of the triangles as they were
+  Eigen::VectorXd areas_;
+  Eigen::MatrixX3d X_, before_;  ///< before the step that is made
   std::vector<char> stays_;
   std::vector<std::vector<int>> chains_;
+  std::vector<int> near_;
   double width_ = 0;
 };
 

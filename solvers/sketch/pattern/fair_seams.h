@@ -21,10 +21,12 @@ Eigen::MatrixX3d faired_line(const Eigen::MatrixX3d& line, double width);
 /// The lines with their normals, which turn evenly between those that they had.
 CutLines faired_lines(const CutLines& lines, double width);
 
-/// Slides the vertices of seams along a surface until seams are fair lines on it, and the vertices
-/// near to them after them. The surface keeps its shape to what its triangles can follow: all
-/// vertices lie on it as it was. Ends of seams, borders and places where seams meet stay; so does
-/// everything about a triangle that would turn over.
+/// Slides the vertices of seams along a surface towards fair lines on it in small steps; those near
+/// to them move by the mean of what their neighbours move by. The surface keeps its shape to what
+/// its triangles can follow: all vertices lie on it as it was. Ends of seams, borders and places
+/// where seams meet stay, and a step that would turn a triangle over is not made there: a seam
+/// keeps a corner where that happens in every step. A seam that slides off a sharp edge of the
+/// surface has triangles that cut the edge off.
 ///
 /// @param seams  edges that may slide
 /// @param kept   further edges whose vertices stay

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -28,35 +29,59 @@ constexpr double kTrialTolerance = 1e-6;
 /// Length of all cuts of a suggestion: shorter ones are not worth sewing, longer ones are not of
 /// anything that is sewn (m). Ours.
 constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
+constexpr int kBranches = 4;           ///< further cuts that are tried of each plan
+constexpr double kSameScore = 0.02;    ///< cuts nearer than this in error and length are the same
+constexpr double kLeastStrain = 1e-6;  ///< mean |log stretch| that is as good as none
 constexpr double kLineWidth = 4;  ///< scale at which the lines of suggestions are fair (mean edges)
 
-class GreedySuggester {
+/// A surface with the suggestions that were cut into it.
+struct Plan {
+  SeamedSurface work;
+  int next_seam = 0;
+  std::vector<SuggestedSeam> suggestions;
+  std::vector<Panel> panels;
+  std::vector<CutTrial> measures;  ///< of the panels as they are
+  FlatMeasure whole;               ///< of all of them
+  double price = 0;                ///< the less, the better
+};
+
+/// Of cuts, the best first, those that leave the piece otherwise than the ones before.
+template <typename Scored>
+void keep_apart(std::vector<Scored>& cuts) {
+  std::vector<Scored> apart;
+  for (Scored& cut : cuts) {
+    const bool is_new = std::none_of(apart.begin(), apart.end(), [&](const Scored& other) {
+      return std::abs(other.trial.flat.strain - cut.trial.flat.strain) <
+                 kSameScore * other.trial.flat.strain &&
+             std::abs(other.trial.lines.length - cut.trial.lines.length) <
+                 kSameScore * other.trial.lines.length;
+    });
+    if (is_new) apart.push_back(std::move(cut));
+  }
+  cuts = std::move(apart);
+}
+
+class SuggestionSearch {
  public:
-  GreedySuggester(const TriMesh& surface, std::span<const SeamEdge> seams,
-                  const SeamSuggestionOptions& options, const PatternOptions& pattern)
-      : options_(options), work_{surface, {seams.begin(), seams.end()}} {
-    for (const SeamEdge& e : seams) next_seam_ = std::max(next_seam_, e.seam + 1);
+  SuggestionSearch(const TriMesh& surface, std::span<const SeamEdge> seams,
+                   const SeamSuggestionOptions& options, const PatternOptions& pattern)
+      : options_(options) {
+    first_.work = {surface, {seams.begin(), seams.end()}};
+    for (const SeamEdge& e : seams) first_.next_seam = std::max(first_.next_seam, e.seam + 1);
     trial_.pattern = pattern;
     trial_.pattern.flatten.iterations = std::min(pattern.flatten.iterations, kTrialIterations);
     trial_.pattern.flatten.tolerance = std::max(pattern.flatten.tolerance, kTrialTolerance);
     trial_.tolerance = options.tolerance;
     if (options.symmetric) trial_.mirror = mirror_axis(surface);
     whole_ = triangle_areas(surface.V, surface.F).sum();
+    diagonal_ = bounding_box_diagonal(surface.V);
     const EdgeConnectivity edges(surface.F);
     for (const Edge& e : edges.edges())
       line_width_ += kLineWidth * (surface.V.row(e[0]) - surface.V.row(e[1])).norm() /
                      static_cast<double>(edges.edge_count());
   }
 
-  std::vector<SuggestedSeam> suggest() {
-    std::vector<SuggestedSeam> suggestions;
-    while (std::ssize(suggestions) < options_.count) {
-      std::optional<SuggestedSeam> next = suggest_one();
-      if (!next) break;
-      suggestions.push_back(std::move(*next));
-    }
-    return suggestions;
-  }
+  std::vector<SuggestedSeam> suggest();
 
  private:
   struct Scored {
@@ -64,8 +89,11 @@ class GreedySuggester {
     double score = 0;
   };
 
-  [[nodiscard]] std::vector<CutTrial> measure(const std::vector<Panel>& pieces) const;
-  std::optional<SuggestedSeam> suggest_one();
+  void measure(Plan& plan) const;
+  [[nodiscard]] bool is_enough(const Plan& plan) const {
+    return !(plan.whole.within < options_.share * plan.whole.area);
+  }
+  [[nodiscard]] std::vector<Plan> continued(const Plan& plan) const;
   [[nodiscard]] std::vector<Scored> best_cuts(const Panel& piece, const CutTrial& before) const;
   [[nodiscard]] std::optional<Scored> score(const Panel& piece,
                                             const std::vector<SurfacePath>& paths,
@@ -73,29 +101,30 @@ class GreedySuggester {
   [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const Panel& panel) const;
   [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<Panel>& pieces,
                                                         std::size_t piece) const;
-  [[nodiscard]] SuggestedSeam suggestion_of(const std::vector<Panel>& pieces,
-                                            const std::vector<CutTrial>& measures, std::size_t p,
-                                            CutTrial best) const;
-  [[nodiscard]] bool apply(SuggestedSeam& suggestion);
+  [[nodiscard]] SuggestedSeam suggestion_of(const Plan& plan, std::size_t p,
+                                            const CutTrial& best) const;
+  [[nodiscard]] std::optional<Plan> applied(const Plan& plan, SuggestedSeam suggestion) const;
 
   SeamSuggestionOptions options_;
   TrialOptions trial_;
-  SeamedSurface work_;
-  int next_seam_ = 0;
+  Plan first_;
   double whole_ = 0;       ///< area of the surface (m^2)
+  double diagonal_ = 0;    ///< m
   double line_width_ = 0;  ///< m
 };
 
-/// Every piece as it is.
-std::vector<CutTrial> GreedySuggester::measure(const std::vector<Panel>& pieces) const {
-  std::vector<CutTrial> measures(pieces.size());
-  std::vector<std::exception_ptr> errors(pieces.size());
-  parallel_blocks(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+/// Every piece as it is, and the price of all: the logarithm of the error, so that what halves it
+/// is worth as much early and late, with what length and number of pieces cost.
+void SuggestionSearch::measure(Plan& plan) const {
+  plan.panels = panels_of(plan.work);
+  plan.measures.assign(plan.panels.size(), {});
+  std::vector<std::exception_ptr> errors(plan.panels.size());
+  parallel_blocks(plan.panels.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       try {
-        std::optional<CutTrial> trial = try_cut(pieces[p], {}, trial_);
+        std::optional<CutTrial> trial = try_cut(plan.panels[p], {}, trial_);
         if (!trial) throw Error("cannot be cut open", "piece " + std::to_string(p + 1));
-        measures[p] = std::move(*trial);
+        plan.measures[p] = std::move(*trial);
       } catch (...) {
         errors[p] = std::current_exception();
       }
@@ -104,12 +133,21 @@ std::vector<CutTrial> GreedySuggester::measure(const std::vector<Panel>& pieces)
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
-  return measures;
+  plan.whole = {};
+  double length = 0;
+  for (const CutTrial& m : plan.measures) {
+    plan.whole.add(m.flat);
+    length += m.opening_length;
+  }
+  for (const SuggestedSeam& seam : plan.suggestions) length += seam.lines.length;
+  plan.price = std::log(std::max(plan.whole.strain / plan.whole.area, kLeastStrain)) +
+               options_.length_weight * length / std::sqrt(whole_) +
+               options_.piece_weight * static_cast<double>(plan.panels.size());
 }
 
 /// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
 /// them, a dart may end on them.
-std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const Panel& panel) const {
+std::vector<std::vector<SurfacePath>> SuggestionSearch::candidates(const Panel& panel) const {
   const CutCandidateOptions options{options_.crease, trial_.mirror, options_.fair};
   std::vector<std::vector<SurfacePath>> found;
   if (!panel.piece.borders.empty()) found = cut_candidates(panel.piece, options);
@@ -130,9 +168,8 @@ std::vector<std::vector<SurfacePath>> GreedySuggester::candidates(const Panel& p
   return found;
 }
 
-std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece,
-                                                              const std::vector<SurfacePath>& paths,
-                                                              const CutTrial& before) const {
+std::optional<SuggestionSearch::Scored> SuggestionSearch::score(
+    const Panel& piece, const std::vector<SurfacePath>& paths, const CutTrial& before) const {
   std::optional<CutTrial> trial;
   try {
     trial = try_cut(piece, paths, trial_);
@@ -145,13 +182,14 @@ std::optional<GreedySuggester::Scored> GreedySuggester::score(const Panel& piece
   if (added < kShortestSuggestion || added > kLongestSuggestion) return {};
   const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
   const double opened = std::max(0.0, trial->opening_length - before.opening_length);
-  const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area);
+  const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area) +
+                      options_.piece_weight * (trial->parts - before.parts);
   return Scored{std::move(*trial), removed - cost};
 }
 
 /// Those that ease the piece for what they cost, the best first.
-std::vector<GreedySuggester::Scored> GreedySuggester::best_cuts(const Panel& piece,
-                                                                const CutTrial& before) const {
+std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(const Panel& piece,
+                                                                  const CutTrial& before) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
   parallel_blocks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -163,6 +201,7 @@ std::vector<GreedySuggester::Scored> GreedySuggester::best_cuts(const Panel& pie
   }
   std::stable_sort(best.begin(), best.end(),
                    [](const Scored& a, const Scored& b) { return a.score > b.score; });
+  keep_apart(best);
   if (best.empty() || options_.rule == SuggestionRule::measured) return best;
   const std::vector<SurfacePath> by_lot =
       random_cuts(piece.piece.mesh, best.front().trial.lines.length, options_.seed);
@@ -173,8 +212,8 @@ std::vector<GreedySuggester::Scored> GreedySuggester::best_cuts(const Panel& pie
 }
 
 /// The other piece that lies where the image of this one is, with about its area.
-std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel>& pieces,
-                                                         std::size_t piece) const {
+std::optional<std::size_t> SuggestionSearch::mirror_image(const std::vector<Panel>& pieces,
+                                                          std::size_t piece) const {
   constexpr double kNear = 0.03;  // of the diagonal, and of the area
   if (!trial_.mirror || options_.rule != SuggestionRule::measured) return {};
   const auto area_and_centre = [](const TriMesh& mesh) {
@@ -185,14 +224,13 @@ std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel
     }
     return std::pair(areas.sum(), Eigen::RowVector3d(sum / areas.sum()));
   };
-  const double diagonal = bounding_box_diagonal(work_.mesh.V);
   const auto [area, centre] = area_and_centre(pieces[piece].piece.mesh);
   const Eigen::RowVector3d image = trial_.mirror->mirrored(centre);
-  if ((image - centre).norm() < kNear * diagonal) return {};  // its own image
+  if ((image - centre).norm() < kNear * diagonal_) return {};  // its own image
   for (std::size_t other = 0; other < pieces.size(); ++other) {
     if (other == piece) continue;
     const auto [other_area, other_centre] = area_and_centre(pieces[other].piece.mesh);
-    if ((other_centre - image).norm() < kNear * diagonal &&
+    if ((other_centre - image).norm() < kNear * diagonal_ &&
         std::abs(other_area - area) < kNear * area) {
       return other;
     }
@@ -200,84 +238,101 @@ std::optional<std::size_t> GreedySuggester::mirror_image(const std::vector<Panel
   return {};
 }
 
-/// Makes a cut, which is in the numbers of the whole surface, unless that leaves a crumb.
-bool GreedySuggester::apply(SuggestedSeam& suggestion) {
+/// The plan with a further cut, which is in the numbers of the whole surface, unless that leaves a
+/// crumb.
+std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam suggestion) const {
   const auto least_piece = [](const SeamedSurface& surface) {
     double least = std::numeric_limits<double>::infinity();
     for (const CutPiece& piece : cut_surface(surface.mesh, surface.seams))
       least = std::min(least, triangle_areas(piece.mesh.V, piece.mesh.F).sum());
     return least;
   };
-  SeamedSurface cut = work_;
-  if (!cut.cut(suggestion.cut, next_seam_)) return false;
-  SeamedSurface opened = cut;
-  if (std::optional<Openings> openings = open_rings(opened, next_seam_ + 1, trial_)) {
+  Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, 0};
+  if (!further.work.cut(suggestion.cut, plan.next_seam)) return {};
+  SeamedSurface opened = further.work;
+  if (std::optional<Openings> openings = open_rings(opened, further.next_seam, trial_)) {
     suggestion.openings = std::move(openings->cuts);
     suggestion.opening_lines = std::move(openings->lines);
   }
   const bool crumbs =
-      least_piece(opened) < std::min(least_piece(work_), options_.min_part * whole_);
-  if (crumbs && options_.rule == SuggestionRule::measured) return false;
+      least_piece(opened) < std::min(least_piece(plan.work), options_.min_part * whole_);
+  if (crumbs && options_.rule == SuggestionRule::measured) return {};
   if (options_.fair) {
     suggestion.lines = faired_lines(suggestion.lines, line_width_);
     suggestion.opening_lines = faired_lines(suggestion.opening_lines, line_width_);
   }
-  work_ = std::move(cut);
-  ++next_seam_;
-  return true;
+  further.suggestions.push_back(std::move(suggestion));
+  measure(further);
+  SuggestedSeam& last = further.suggestions.back();
+  last.share_before = plan.whole.within / plan.whole.area;
+  last.strain_before = plan.whole.strain / plan.whole.area;
+  last.share_after = further.whole.within / further.whole.area;
+  last.strain_after = further.whole.strain / further.whole.area;
+  return further;
 }
 
-/// The cut of a piece, and of the piece that is its mirror image, with what they come to.
-SuggestedSeam GreedySuggester::suggestion_of(const std::vector<Panel>& pieces,
-                                             const std::vector<CutTrial>& measures, std::size_t p,
-                                             CutTrial best) const {
-  FlatMeasure whole;
-  for (const CutTrial& m : measures) whole.add(m.flat);
+/// The cut of a piece, and of the piece that is its mirror image.
+SuggestedSeam SuggestionSearch::suggestion_of(const Plan& plan, std::size_t p,
+                                              const CutTrial& best) const {
   SuggestedSeam suggestion;
-  FlatMeasure now = whole;
   const auto take = [&](std::size_t piece, const CutTrial& trial) {
-    now.within += trial.flat.within - measures[piece].flat.within;
-    now.strain += trial.flat.strain - measures[piece].flat.strain;
     suggestion.lines.append(trial.lines);
     for (const SurfacePath& path : trial.cut)
-      suggestion.cut.push_back(renumbered(path, pieces[piece].piece.surface_vertex));
+      suggestion.cut.push_back(renumbered(path, plan.panels[piece].piece.surface_vertex));
   };
   suggestion.is_dart = best.parts == 1;
-  if (const std::optional<std::size_t> image = mirror_image(pieces, p)) {
+  if (const std::optional<std::size_t> image = mirror_image(plan.panels, p)) {
     const std::vector<SurfacePath> cut =
-        mirrored_cut(pieces[*image].piece, best.lines.points, {options_.crease, trial_.mirror});
+        mirrored_cut(plan.panels[p].piece, plan.panels[*image].piece, best.cut,
+                     {options_.crease, trial_.mirror, options_.fair});
     std::optional<Scored> mirrored;
-    if (!cut.empty()) mirrored = score(pieces[*image], cut, measures[*image]);
+    if (!cut.empty()) mirrored = score(plan.panels[*image], cut, plan.measures[*image]);
     if (mirrored) take(*image, mirrored->trial);
   }
   take(p, best);
-  suggestion.share_before = whole.within / whole.area;
-  suggestion.strain_before = whole.strain / whole.area;
-  suggestion.share_after = now.within / whole.area;
-  suggestion.strain_after = now.strain / whole.area;
   return suggestion;
 }
 
-std::optional<SuggestedSeam> GreedySuggester::suggest_one() {
-  const std::vector<Panel> pieces = panels_of(work_);
-  const std::vector<CutTrial> measures = measure(pieces);
-  FlatMeasure whole;
-  for (const CutTrial& m : measures) whole.add(m.flat);
-  if (!(whole.within < options_.share * whole.area)) return {};
-  std::vector<std::size_t> order(pieces.size());
+/// The plan with one cut more, of the piece that is strained most among those that can be cut.
+std::vector<Plan> SuggestionSearch::continued(const Plan& plan) const {
+  std::vector<std::size_t> order(plan.panels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return measures[a].flat.strain > measures[b].flat.strain;
+    return plan.measures[a].flat.strain > plan.measures[b].flat.strain;
   });
+  std::vector<Plan> plans;
   for (const std::size_t p : order) {
-    const FlatMeasure& then = measures[p].flat;
+    const FlatMeasure& then = plan.measures[p].flat;
     if (!(then.within < then.area)) continue;
-    for (Scored& best : best_cuts(pieces[p], measures[p])) {
-      SuggestedSeam suggestion = suggestion_of(pieces, measures, p, std::move(best.trial));
-      if (apply(suggestion)) return suggestion;
+    for (const Scored& best : best_cuts(plan.panels[p], plan.measures[p])) {
+      if (std::ssize(plans) >= kBranches) break;
+      std::optional<Plan> further = applied(plan, suggestion_of(plan, p, best.trial));
+      if (further) plans.push_back(std::move(*further));
     }
+    if (!plans.empty()) break;
   }
-  return {};
+  return plans;
+}
+
+std::vector<SuggestedSeam> SuggestionSearch::suggest() {
+  measure(first_);
+  std::vector<Plan> plans{first_};
+  const auto cheaper = [](const Plan& a, const Plan& b) { return a.price < b.price; };
+  for (int step = 0; step < options_.count && !is_enough(plans.front()); ++step) {
+    std::vector<Plan> next;
+    for (const Plan& plan : plans) {
+      std::vector<Plan> further = continued(plan);
+      next.insert(next.end(), std::make_move_iterator(further.begin()),
+                  std::make_move_iterator(further.end()));
+    }
+    if (next.empty()) break;
+    std::stable_sort(next.begin(), next.end(), cheaper);
+    std::stable_partition(next.begin(), next.end(),
+                          [&](const Plan& plan) { return is_enough(plan); });
+    if (std::ssize(next) > options_.plans) next.resize(static_cast<std::size_t>(options_.plans));
+    plans = std::move(next);
+  }
+  return plans.front().suggestions;
 }
 
 }  // namespace
@@ -294,6 +349,14 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
   v.value("length_weight", o.length_weight,
           {.doc = "share of the error that a cut as long as the root of a piece's area must remove",
            .min = 0});
+  v.value(
+      "piece_weight", o.piece_weight,
+      {.doc = "share of the error that a cut must remove for each piece that it adds", .min = 0});
+  v.value(
+      "plans", o.plans,
+      {.doc = "sets of suggestions that are followed at once; 1: the best cut, and on from there",
+       .min = 1,
+       .max = 100});
   v.value("crease", o.crease,
           {.doc = "how much cheaper cuts are along lines of concentrated curvature",
            .min = 0,
@@ -312,7 +375,7 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
 std::vector<SuggestedSeam> suggest_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
                                          const SeamSuggestionOptions& options,
                                          const PatternOptions& pattern) {
-  return GreedySuggester(surface, seams, options, pattern).suggest();
+  return SuggestionSearch(surface, seams, options, pattern).suggest();
 }
 
 }  // namespace geoprior::sketch

@@ -21,6 +21,8 @@ struct SeamSuggestionOptions {
   double share = 0.95;
   int count = 3;
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
+  double piece_weight = 0.12;   ///< what a piece more costs, in removed error
+  int plans = 3;                ///< followed at once
   double crease = 0.3;
   double min_part = 0.02;
   bool fair = true;
@@ -33,20 +35,25 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 /// Seams and darts that would make the pattern of a surface fit it (the thesis, end of 2.1.2: "at
 /// the current state, the interpretation of the non-developable part is fully let to the user").
 ///
-/// Greedy: of the piece whose pattern is strained most, every candidate (`cut_candidates`) is cut
-/// and its parts are laid flat (`try_cut`); suggested is the one with the largest
+/// Of the piece whose pattern is strained most, every candidate (`cut_candidates`) is cut and its
+/// parts are laid flat (`try_cut`). The best few in
 ///
-///   (E - E') / E - length_weight * length / sqrt(area),
+///   (E - E') / E - length_weight * length / sqrt(area) - piece_weight * added pieces,
 ///
-/// E the integral of |log stretch| over the piece before, E' after the cut, both measured. When the
-/// surface is its own mirror image and the piece's image is another piece, that one is cut alike,
-/// in the same suggestion. Then all begins anew on the cut surface, until the share of the area
-/// within the tolerance is reached. Candidates whose parts overlap themselves in the plane are left
-/// out when the piece did not, and those that leave a piece smaller than `min_part`, all cuts and
-/// openings made. The lines of suggestions are fair (`faired_lines`).
+/// E the integral of |log stretch| over the piece before, E' after the cut, both measured, are
+/// made, each in a plan of its own. When the surface is its own mirror image and the piece's image
+/// is another piece, that one is cut alike, in the same suggestion. Of all plans the `plans` with
+/// the least
 ///
-/// It cannot: move a seam that is there, take cuts back, look two cuts ahead, or know what a tailor
-/// likes. Work is that of flattening a piece some thirty times a suggestion.
+///   log(mean |log stretch|) + length_weight * length / sqrt(area) + piece_weight * pieces
+///
+/// of the whole surface are followed further, until one has the share of the area within the
+/// tolerance. Candidates whose parts overlap themselves in the plane are left out when the piece
+/// did not, and those that leave a piece smaller than `min_part`, all cuts and openings made. The
+/// lines of suggestions are fair (`faired_lines`).
+///
+/// It cannot: move a seam that is there, take cuts back, or know what a tailor likes. Work is that
+/// of flattening a piece some thirty times a suggestion and plan.
 /// @param surface  of length m, oriented manifold
 /// @param seams    that it is cut along already
 /// @return         in rank order; each is meant to be made after those before it

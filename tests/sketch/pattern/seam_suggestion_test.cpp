@@ -106,6 +106,24 @@ TEST(SplitAlong, KeepsTheAreaAndHasThePathAsEdges) {
   EXPECT_GT(split->added.size(), 3u);
 }
 
+TEST(SplitAlong, WhatRunsAlongTwoSidesOfATriangleTakesTheThird) {
+  const TriMesh plane =
+      flats::grid(10, 10, [](int i, int j) { return Eigen::Vector3d(0.1 * i, 0.1 * j, 0); });
+  const EdgeConnectivity edges(plane.F);
+  // Up a column of vertices, once around the corner of a triangle beside it.
+  SurfacePath path;
+  for (int j = 1; j <= 8; ++j) {
+    path.push_back(at_vertex(11 * j + 5));
+    const int beside = 11 * j + (edges.find(11 * j + 6, 11 * (j + 1) + 5) ? 6 : 4);
+    if (j == 4 && edges.find(beside, 11 * (j + 1) + 5)) path.push_back(at_vertex(beside));
+  }
+  ASSERT_EQ(path.size(), 9u);
+  const auto split = split_along(plane, std::vector<SurfacePath>{path});
+  ASSERT_TRUE(split);
+  EXPECT_EQ(split->path.size(), 7u);
+  for (const Edge& e : split->path) EXPECT_NEAR(plane.V(e[0], 0), plane.V(e[1], 0), 1e-12);
+}
+
 TEST(ConformalScale, OfAConeIsTheLogarithmOfTheRadius) {
   // A cone of angle 2 pi s at its apex is flattened by r -> r^(1/s): dlog/dr of the scale is
   // (1/s - 1)/r, and u = -log scale with u = 0 at r = 1 is (1/s - 1) log(1/r) … here times s, since
@@ -229,6 +247,23 @@ TEST(SuggestSeams, PiecesThatAreMirrorImagesAreCutAlike) {
       EXPECT_NEAR(a.z(), b.z(), 1e-9);
     }
   }
+}
+
+TEST(SuggestSeams, PiecesThatCostMoreAreFewer) {
+  const TriMesh mesh = dome(1);
+  SeamSuggestionOptions cheap, dear;
+  cheap.count = dear.count = 2;
+  cheap.share = dear.share = 1;
+  cheap.piece_weight = 0;
+  dear.piece_weight = 1;
+  const auto pieces = [&](const SeamSuggestionOptions& options) {
+    SeamedSurface surface{mesh, {}};
+    int seam = 0;
+    for (const SuggestedSeam& suggested : suggest_seams(mesh, {}, options))
+      EXPECT_TRUE(surface.cut(suggested.cut, seam++));
+    return cut_surface(surface.mesh, surface.seams).size();
+  };
+  EXPECT_LT(pieces(dear), pieces(cheap));
 }
 
 TEST(SuggestSeams, IsTheSameAtAnyNumberOfThreads) {
