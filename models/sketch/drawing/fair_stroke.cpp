@@ -210,20 +210,24 @@ class KinkSearch {
   int half_wave_;
 };
 
-/// Largest second difference that tremor leaves anywhere on a smoothed curve, or hardly more.
+/// Largest second difference that tremor leaves anywhere on a smoothed curve, or hardly more. What
+/// is between the shape and the tremor may be either's.
 double noisy_bend(const TremorBand& band, double cut, int samples) {
-  double sum = 0, all = 0;
+  double tremor = 0, all = 0, between = 0;
   for (int k = 1; k < 3 * band.waves; ++k) {
     const double off = (k - band.waves) / std::max(band.spread, 0.5);
     const double power = std::exp(-off * off / 2);
     const double squared = std::pow(2 * std::sin(std::numbers::pi * k / samples), 2);
-    sum += power * std::pow(gain_of(k, cut, kOrder) * squared, 2);
+    const double bend = std::pow(gain_of(k, cut, kOrder) * squared, 2);
+    tremor += power * bend;
     all += power;
+    if (k < band.waves / 2) between += bend / (band.waves / 4);
   }
   // Squares of normal noise in two coordinates are exponentially distributed: the largest of so
   // many independent ones is about ln (their number) means.
   constexpr double kAbove = 5;
-  const double mean = all > 0 ? 2 * band.sigma * band.sigma * sum / all : 0;
+  const double share = all > 0 ? tremor / all : 0;
+  const double mean = 2 * band.sigma * band.sigma * (share + band.between * between);
   return std::sqrt(mean * (std::log(2 * cut + 1) + kAbove));
 }
 

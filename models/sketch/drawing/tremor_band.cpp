@@ -78,6 +78,15 @@ int peak_of(const std::vector<double>& power) {
   return peak;
 }
 
+double between(const std::vector<double>& power, double waves) {
+  double low = 0, high = 0;
+  for (int k = 1; k < std::ssize(power) && k <= 2 * waves; ++k) {
+    if (k > waves / 4 && k < waves / 2) low += power[k];
+    if (k >= waves / 2) high += power[k];
+  }
+  return high > 0 ? low / high : std::numeric_limits<double>::infinity();
+}
+
 TremorBand band_of(const std::vector<double>& power) {
   TremorBand band;
   band.waves = peak_of(power);
@@ -95,17 +104,8 @@ TremorBand band_of(const std::vector<double>& power) {
     band.spread = std::sqrt(std::max(0.0, second / sum - band.waves * band.waves));
     band.sigma = std::sqrt(sum / 2);
   }
+  band.between = between(power, band.waves);
   return band;
-}
-
-/// Power between the shape and the tremor, over the tremor's.
-double between(const std::vector<double>& power, const TremorBand& band) {
-  double low = 0, high = 0;
-  for (int k = 1; k < std::ssize(power) && k <= 2 * band.waves; ++k) {
-    if (k > band.waves / 4 && k < band.waves / 2) low += power[k];
-    if (k >= band.waves / 2) high += power[k];
-  }
-  return high > 0 ? low / high : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> steps_clock(const Points& chain) {
@@ -161,14 +161,10 @@ TimedStroke in_equal_times(const Points& points, bool closed) {
       {{&chain, steps_clock(chain)}, {&chain, lengths}, {&even, std::move(bends)}}};
   TremorBand band;
   std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < guesses.size(); ++g) {
     const auto& [line, clock] = guesses[g];
-    const std::vector<double> power = powers(sampled(*line, clock, count, closed), closed);
-    const TremorBand found = band_of(power);
-    const double left = between(power, found);
-    if (g > 0 && left >= least) continue;
-    least = left;
+    const TremorBand found = band_of(powers(sampled(*line, clock, count, closed), closed));
+    if (g > 0 && found.between >= band.between) continue;
     best = g;
     band = found;
   }

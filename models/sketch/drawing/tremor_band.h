@@ -10,6 +10,9 @@ struct TremorBand {
   double waves = 0;   ///< mean number of waves along the stroke
   double spread = 0;  ///< standard deviation of that number
   double sigma = 0;   ///< standard deviation of the tremor, a coordinate (m)
+  /// Power between the shape and the tremor, from a quarter to a half of its waves, over the
+  /// tremor's.
+  double between = 0;
 };
 
 /// A stroke at equal steps of time.
@@ -23,7 +26,7 @@ struct TimedStroke {
 /// of the drawn line they are mixed, because a trembling pen is fast halfway between its turns.
 ///
 /// The time is not written in a drawing. Of three guesses that one is taken which leaves least
-/// between the shape and the tremor (a quarter to a half of its frequency, over what is above):
+/// between the shape and the tremor:
 ///
 /// - one step from point to point: pens are sampled at equal times;
 /// - the length of the line;
