@@ -87,8 +87,8 @@ class DrawingReader {
                   document_.name + ": view:" + view_name(kind));
     const double size = diagonal(lines);
     if (options_.tremor) add_tremor(lines, size);
-    const HandDrawnView hand(document_.name + ": view:" + view_name(kind), size, options_.hand,
-                             result_.warnings);
+    HandDrawnView hand(document_.name + ": view:" + view_name(kind), size, options_.hand,
+                       result_.warnings);
     std::vector<DrawnStroke> silhouettes;
     for (DrawnStroke& line : lines) {
       clean(line, std::min(kExactSnap, options_.hand.snap) * size);
@@ -175,7 +175,7 @@ class DrawingReader {
   }
 
   [[nodiscard]] std::vector<Stroke> closed_silhouettes(const std::vector<DrawnStroke>& lines,
-                                                       ViewKind kind, const HandDrawnView& hand,
+                                                       ViewKind kind, HandDrawnView& hand,
                                                        double size) const {
     std::vector<Stroke> strokes;
     for (const DrawnStroke& line : lines) {

@@ -282,26 +282,24 @@ FairedSamples faired_samples(const TimedStroke& stroke, bool closed) {
 
 }  // namespace
 
-bool is_trembling(const Points& points, bool closed) {
-  constexpr std::size_t kFewPoints = 60;
-  constexpr int kFewChanges = 30;
+bool is_trembling(const Points& points, bool closed, int changes) {
   constexpr double kTurn = 0.05;  // rad: less is rounding of a straight line's points
-  if (points.size() < kFewPoints) return false;
+  if (std::ssize(points) < 2 * changes) return false;
   Points chain = points;
   if (closed) chain.push_back(points.front());
-  int changes = 0;
+  int found = 0;
   double last = 0;
   for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
     const double turn = signed_angle(chain[i] - chain[i - 1], chain[i + 1] - chain[i]);
     if (std::abs(turn) < kTurn) continue;
-    if (turn * last < 0) ++changes;
+    if (turn * last < 0) ++found;
     last = turn;
   }
-  return changes >= kFewChanges;
+  return found >= changes;
 }
 
-std::optional<FairedStroke> fair_stroke(const Points& points, bool closed) {
-  if (!is_trembling(points, closed)) return std::nullopt;
+std::optional<FairedStroke> fair_stroke(const Points& points, bool closed, int changes) {
+  if (!is_trembling(points, closed, changes)) return std::nullopt;
   const TimedStroke stroke = in_equal_times(points, closed);
   const FairedSamples samples = faired_samples(stroke, closed);
   const int count = static_cast<int>(samples.x.rows());

@@ -14,6 +14,10 @@ struct FairedStroke {
   std::vector<Eigen::Vector2d> corners;  ///< that were found and kept
 };
 
+/// Changes between left and right turns that tell a trembling hand from teeth that were meant, and
+/// those that do for short strokes beside others of that hand.
+inline constexpr int kTremblingChanges = 30, kChangesBesideTremor = 12;
+
 /// Takes tremor off a stroke below the band of its waves, and keeps its corners.
 ///
 ///   minimise  sum |x_i - y_i|^2 + lambda sum |D^4 x_i|^2,  gain 1 / (1 + (k / k_c)^8) of k waves
@@ -47,13 +51,16 @@ struct FairedStroke {
 /// smaller tremor it is more (0.3 %: 0.7, worst 1.9), since corners are as hard to place.
 ///
 /// @param points  closed: the last is joined to the first
-/// @return        nothing for a stroke that is not noisy, which is one of few points, or of few
-///                changes between left and right turns
+/// @param changes as of `is_trembling`
+/// @return        nothing for a stroke that does not tremble
 /// Source: Reinsch 1967 (the functional).
-std::optional<FairedStroke> fair_stroke(const std::vector<Eigen::Vector2d>& points, bool closed);
+std::optional<FairedStroke> fair_stroke(const std::vector<Eigen::Vector2d>& points, bool closed,
+                                        int changes = kTremblingChanges);
 
 /// Whether a stroke turns to and fro as only a trembling hand does: often, and by no small angles.
 /// A tremor that goes round in loops, always the same way, is not seen.
-bool is_trembling(const std::vector<Eigen::Vector2d>& points, bool closed);
+/// @param changes  between left and right turns that are needed, half as many as points
+bool is_trembling(const std::vector<Eigen::Vector2d>& points, bool closed,
+                  int changes = kTremblingChanges);
 
 }  // namespace geoprior::sketch

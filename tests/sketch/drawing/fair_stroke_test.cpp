@@ -242,8 +242,8 @@ Points at_equal_distances(const Points& points) {
   const Points chain = closed_chain(points);
   const double whole = length(chain);
   Points even;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    even.push_back(point_along(chain, whole * static_cast<double>(i) / points.size()));
+  const int count = static_cast<int>(points.size());
+  for (int i = 0; i < count; ++i) even.push_back(point_along(chain, whole * i / count));
   return even;
 }
 
