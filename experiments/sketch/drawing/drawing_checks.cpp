@@ -68,11 +68,18 @@ std::vector<HeightRange> turned_over(std::vector<HeightRange> ranges, double hei
   return ranges;
 }
 
-/// Borders of `view` that have no partner in the other one.
+/// Borders of `view` that have no partner in the other one; once for all where that has none.
 void warn_of_lone_borders(const std::string& drawing, ViewKind view, ViewKind other,
                           const std::vector<HeightRange>& borders,
                           const std::vector<HeightRange>& others, double near,
                           std::vector<std::string>& warnings) {
+  if (others.empty() && borders.size() > 1) {
+    warnings.push_back(drawing + ": view:" + view_name(view) + ": stroke '" +
+                       borders.front().border->id + "' and " + std::to_string(borders.size() - 1) +
+                       " more are borders, and view:" + view_name(other) +
+                       " has none: draw the rim in every view that shows it");
+    return;
+  }
   for (const HeightRange& range : borders) {
     if (has_partner(range, others, near)) continue;
     std::array<char, 160> text;

@@ -11,7 +11,8 @@ namespace geoprior::sketch {
 ///
 /// - a surface without borders and seams: it is closed, and only cuts that the program chooses lay
 ///   it flat;
-/// - a border of the front view at a height where the side view has none, or the other way round;
+/// - a border of the front view at a height where the side view has none, or the other way round
+///   (one line for all borders of a view when the other has none at all);
 /// - front and side that fit each other far better when one is turned upside down: by their widths
 ///   at all heights, or by their borders.
 /// @param aligned  of `align_views`

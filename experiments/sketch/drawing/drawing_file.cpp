@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/geometry/planar.h"
 #include "core/limits.h"
 #include "experiments/sketch/drawing/drawn_stroke.h"
 #include "experiments/sketch/drawing/hand_drawn.h"
@@ -86,8 +87,8 @@ class DrawingReader {
                   document_.name + ": view:" + view_name(kind));
     const double size = diagonal(lines);
     if (options_.tremor) add_tremor(lines, size);
-    const HandDrawnView hand(document_.name + ": view:" + view_name(kind), size, options_.hand,
-                             result_.warnings);
+    HandDrawnView hand(document_.name + ": view:" + view_name(kind), size, options_.hand,
+                       result_.warnings);
     std::vector<DrawnStroke> silhouettes;
     for (DrawnStroke& line : lines) {
       clean(line, std::min(kExactSnap, options_.hand.snap) * size);
@@ -125,6 +126,21 @@ class DrawingReader {
     }
   }
 
+  /// Whether all points lie on one line.
+  static bool is_straight(const std::vector<Eigen::Vector2d>& points) {
+    const Eigen::Vector2d from = points.front();
+    const Eigen::Vector2d along =
+        *std::max_element(points.begin(), points.end(),
+                          [&](const auto& a, const auto& b) {
+                            return (a - from).squaredNorm() < (b - from).squaredNorm();
+                          }) -
+        from;
+    constexpr double kRounding = 1e-9;
+    return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
+      return std::abs(cross(along, p - from)) <= kRounding * along.squaredNorm();
+    });
+  }
+
   static double diagonal(const std::vector<DrawnStroke>& lines) {
     Eigen::Vector2d low = lines.front().stroke.points.front(), high = low;
     for (const DrawnStroke& line : lines) {
@@ -159,10 +175,16 @@ class DrawingReader {
   }
 
   [[nodiscard]] std::vector<Stroke> closed_silhouettes(const std::vector<DrawnStroke>& lines,
-                                                       ViewKind kind, const HandDrawnView& hand,
+                                                       ViewKind kind, HandDrawnView& hand,
                                                        double size) const {
     std::vector<Stroke> strokes;
-    for (const DrawnStroke& line : lines) strokes.push_back(line.stroke);
+    for (const DrawnStroke& line : lines) {
+      if (line.stroke.closed && is_straight(line.stroke.points)) {
+        throw Error("the silhouette is a straight line there and back, and encloses nothing",
+                    line.place, "an area");
+      }
+      strokes.push_back(line.stroke);
+    }
     SilhouetteLoops joined = hand.silhouettes(strokes);
     const std::string where = document_.name + ": view:" + view_name(kind) + ": ";
     if (joined.gap) {

@@ -69,11 +69,11 @@ std::string HandDrawnView::share_text(double metres) const {
          formatted(" (%.2g %% of the view's diagonal)", 100 * metres / diagonal_);
 }
 
-void HandDrawnView::fair(Stroke& stroke, std::vector<std::string>& notes) const {
-  if (!options_.fairing) return;
-  std::optional<FairedStroke> faired = fair_stroke(stroke.points, stroke.closed);
+bool HandDrawnView::fair(Stroke& stroke, int changes, std::vector<std::string>& notes) const {
+  if (!options_.fairing) return false;
+  std::optional<FairedStroke> faired = fair_stroke(stroke.points, stroke.closed, changes);
   constexpr double kLeast = 1e-3;  // of the diagonal: less is no tremor but how it was written
-  if (!faired || faired->noise < kLeast * diagonal_) return;
+  if (!faired || faired->noise < kLeast * diagonal_) return false;
   if (faired->noise > options_.noise * diagonal_) {
     throw Error("stroke '" + stroke.id + "' trembles by " + share_text(faired->noise) +
                     " (standard deviation)",
@@ -86,11 +86,12 @@ void HandDrawnView::fair(Stroke& stroke, std::vector<std::string>& notes) const 
                   " (standard deviation), and is faired: moved by at most " +
                   share_text(faired->moved) + ", " + std::to_string(faired->corners.size()) +
                   " corners kept");
+  return true;
 }
 
 void HandDrawnView::fair(Stroke& stroke) const {
   std::vector<std::string> notes;
-  fair(stroke, notes);
+  fair(stroke, trembles_ ? kChangesBesideTremor : kTremblingChanges, notes);
   for (const std::string& note : notes) warnings_.push_back(where_ + ": " + note);
 }
 
@@ -107,17 +108,18 @@ HandDrawnView::Attempt HandDrawnView::attempt(const std::vector<Stroke>& strokes
                          share_text(width / 2));
   }
   for (Stroke& loop : made.loops.loops) {
-    if (loop.points.size() >= 3) fair(loop, made.notes);
+    if (loop.points.size() >= 3 && fair(loop, kTremblingChanges, made.notes)) made.trembles = true;
   }
   made.good = made.loops.loops.size() == 1 && made.loops.loops[0].points.size() >= 3 &&
               !self_crossing(made.loops.loops[0]);
   return made;
 }
 
-SilhouetteLoops HandDrawnView::silhouettes(const std::vector<Stroke>& strokes) const {
+SilhouetteLoops HandDrawnView::silhouettes(const std::vector<Stroke>& strokes) {
   if (strokes.empty()) return {};
   const auto accepted = [&](Attempt& made) {
     for (const std::string& note : made.notes) warnings_.push_back(where_ + ": " + note);
+    trembles_ = made.trembles;
     return std::move(made.loops);
   };
   Attempt exact = attempt(strokes, std::min(kExactSnap, options_.snap));

@@ -32,8 +32,9 @@ class HandDrawnView {
 
   /// Closed silhouettes: joined as they are, else over wider gaps, else without double lines.
   /// @throws Error  a tremor beyond `noise`
-  [[nodiscard]] SilhouetteLoops silhouettes(const std::vector<Stroke>& strokes) const;
-  /// A trembling stroke of another kind. @throws Error  as `silhouettes`
+  [[nodiscard]] SilhouetteLoops silhouettes(const std::vector<Stroke>& strokes);
+  /// A trembling stroke of another kind; when silhouettes tremble, fewer turns tell that it does.
+  /// @throws Error  as `silhouettes`
   void fair(Stroke& stroke) const;
   /// A border beside the silhouette is laid onto it, its ends to corners that are near.
   void lay_on_silhouette(Stroke& border, const Stroke& silhouette) const;
@@ -46,14 +47,17 @@ class HandDrawnView {
     SilhouetteLoops loops;
     std::vector<std::string> notes;
     bool good = false;  ///< one simple loop
+    bool trembles = false;
   };
   [[nodiscard]] Attempt attempt(const std::vector<Stroke>& strokes, double snap) const;
-  void fair(Stroke& stroke, std::vector<std::string>& notes) const;
+  /// Whether it trembled.
+  bool fair(Stroke& stroke, int changes, std::vector<std::string>& notes) const;
 
   std::string where_;
   double diagonal_;
   const HandDrawnOptions& options_;
   std::vector<std::string>& warnings_;
+  bool trembles_ = false;  ///< one of the silhouettes
 };
 
 }  // namespace geoprior::sketch

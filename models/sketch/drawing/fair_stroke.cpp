@@ -1,6 +1,6 @@
 #include "models/sketch/drawing/fair_stroke.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -10,199 +10,225 @@
 #include <utility>
 
 #include "core/geometry/planar.h"
-#include "models/sketch/drawing/polyline.h"
+#include "models/sketch/drawing/tremor_band.h"
 
 namespace geoprior::sketch {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr int kSplinePoints = 400;  ///< of a stroke
-constexpr int kLeftOut = 3;         ///< neighbours on each side that are left out with a point
-constexpr int kMostCorners = 16;
-constexpr int kLambdaSteps = 10;   ///< of the logarithm of lambda, two to a decade
-constexpr int kStepsBelow = 2;     ///< steps below the best lambda that are taken
-constexpr double kAboveNoise = 3;  ///< of a corner's gain over what noise gives, over its mean
+constexpr int kOrder = 4;  ///< of the differences that are penalised
+constexpr int kMostCorners = 20;
+constexpr int kMostPoints = 400;  ///< of a faired stroke, beside its corners
 
-double lambda_of(int step) { return std::pow(10.0, step / 2.0); }
+/// Gain of the smoothing at k waves when it is a half at `cut` waves.
+double gain_of(double k, double cut, int order) { return 1 / (1 + std::pow(k / cut, 2 * order)); }
 
-Points chain_of(const Points& points, bool closed) {
-  Points chain = points;
-  if (closed) chain.push_back(points.front());
-  return chain;
-}
-
-/// Points at equal distances: kSplinePoints of a closed stroke, one more of an open one.
-Eigen::MatrixX2d even_samples(const Points& chain, bool closed) {
-  const double whole = length(chain);
-  Eigen::MatrixX2d samples(kSplinePoints + (closed ? 0 : 1), 2);
-  double before = 0;
-  std::size_t segment = 0;
-  for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-    const double at = whole * static_cast<double>(i) / kSplinePoints;
-    double size = (chain[segment + 1] - chain[segment]).norm();
-    while (segment + 2 < chain.size() && before + size < at) {
-      before += size;
-      ++segment;
-      size = (chain[segment + 1] - chain[segment]).norm();
-    }
-    const double t = size > 0 ? std::clamp((at - before) / size, 0.0, 1.0) : 0;
-    samples.row(i) = (chain[segment] + t * (chain[segment + 1] - chain[segment])).transpose();
+/// Standard deviation of the tremor that such a cut leaves, over all of it.
+double share_left(const TremorBand& band, double cut) {
+  double left = 0, all = 0;
+  for (int k = 1; k < 3 * band.waves; ++k) {
+    const double off = (k - band.waves) / std::max(band.spread, 0.5);
+    const double power = std::exp(-off * off / 2), gain = gain_of(k, cut, kOrder);
+    left += power * gain * gain;
+    all += power;
   }
-  return samples;
+  return all > 0 ? std::sqrt(left / all) : 0;
 }
 
-class SmoothingSpline {
- public:
-  SmoothingSpline(Eigen::MatrixX2d y, bool closed)
-      : y_(std::move(y)), closed_(closed), n_(static_cast<int>(y_.rows())) {}
+/// 0.3 of the tremor's waves, or as little more than 0.2 as leaves 3 % of a wide band.
+double cut_below(const TremorBand& band) {
+  constexpr double kHighest = 0.3, kLowest = 0.2, kShare = 0.03, kStep = 0.01;
+  double cut = kHighest;
+  while (cut > kLowest && share_left(band, cut * band.waves) > kShare) cut -= kStep;
+  return cut * band.waves;
+}
 
-  /// Minimises for these corners; the other members speak of the last one.
-  void solve(int step, const std::vector<int>& corners) {
-    lambda_ = lambda_of(step);
-    free_.assign(n_, static_cast<char>(closed_ ? 0 : 1));
-    if (!closed_) std::fill(free_.begin() + 1, free_.end() - 1, char{0});
-    for (const int c : corners) free_[c] = 1;
+Eigen::MatrixXd second_differences(const Eigen::MatrixXd& x, bool closed) {
+  const int n = static_cast<int>(x.rows());
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, x.cols());
+  for (int i = closed ? 0 : 1; i < (closed ? n : n - 1); ++i)
+    d.row(i) = x.row((i + n - 1) % n) - 2 * x.row(i) + x.row((i + 1) % n);
+  return d;
+}
+
+/// Minimises sum |x_i - y_i|^2 + lambda sum |D^order x|^2 for samples y.
+class Smoothing {
+ public:
+  /// @param cut  waves along the samples at which the gain is a half
+  Smoothing(int samples, bool closed, int order, double cut)
+      : n_(samples),
+        closed_(closed),
+        order_(order),
+        lambda_(std::pow(2 * std::sin(std::numbers::pi * cut / samples), -2 * order)) {
+    std::vector<double> weights{1};
+    for (int i = 0; i < order; ++i) {
+      weights.push_back(0);
+      for (std::size_t a = weights.size() - 1; a > 0; --a) weights[a] = weights[a - 1] - weights[a];
+      weights[0] = -weights[0];
+    }
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < n_; ++i) {
       entries.emplace_back(i, i, 1);
-      if (free_[i]) continue;
-      for (int a = -1; a <= 1; ++a) {
-        for (int b = -1; b <= 1; ++b)
-          entries.emplace_back(at(i + a), at(i + b), lambda_ * weight(a) * weight(b));
+      if (!closed && i + order >= n_) continue;
+      for (int a = 0; a <= order; ++a) {
+        for (int b = 0; b <= order; ++b)
+          entries.emplace_back((i + a) % n_, (i + b) % n_, lambda_ * weights[a] * weights[b]);
       }
     }
     Eigen::SparseMatrix<double> matrix(n_, n_);
     matrix.setFromTriplets(entries.begin(), entries.end());
     factor_.compute(matrix);
-    x_ = factor_.solve(y_);
-  }
-  void invert() { inverse_ = factor_.solve(Eigen::MatrixXd::Identity(n_, n_)); }
-
-  /// Mean square error of points that are predicted without their block. Needs `invert`.
-  [[nodiscard]] double cross_validation() const {
-    constexpr int kSize = 2 * kLeftOut + 1;
-    double sum = 0;
-    int count = 0;
-    for (int i = 0; i < n_; ++i) {
-      if (!closed_ && (i < kLeftOut || i + kLeftOut >= n_)) continue;
-      Eigen::Matrix<double, kSize, kSize> left;
-      Eigen::Matrix<double, kSize, 2> residual;
-      for (int a = 0; a < kSize; ++a) {
-        const int row = at(i + a - kLeftOut);
-        residual.row(a) = y_.row(row) - x_.row(row);
-        for (int b = 0; b < kSize; ++b)
-          left(a, b) = (a == b ? 1 : 0) - inverse_(row, at(i + b - kLeftOut));
-      }
-      const Eigen::Matrix<double, kSize, 2> missed = left.partialPivLu().solve(residual);
-      sum += missed.row(kLeftOut).squaredNorm();
-      ++count;
-    }
-    return sum / count;
   }
 
-  /// By how much freeing a point would lower the minimum. Needs `invert`.
-  [[nodiscard]] double gain(int i) const {
-    if (free_[i]) return 0;
-    double spread = 0;
-    for (int a = -1; a <= 1; ++a) {
-      for (int b = -1; b <= 1; ++b)
-        spread += weight(a) * weight(b) * inverse_(at(i + a), at(i + b));
-    }
-    return lambda_ * bend(i).squaredNorm() / std::max(1 - lambda_ * spread, 1e-9);
-  }
+  [[nodiscard]] Eigen::MatrixXd of(const Eigen::MatrixXd& y) const { return factor_.solve(y); }
 
-  [[nodiscard]] double minimum() const {
-    double sum = (y_ - x_).squaredNorm();
-    for (int i = 0; i < n_; ++i) sum += free_[i] ? 0 : lambda_ * bend(i).squaredNorm();
-    return sum;
+  /// What a kink's second difference of 1 in the middle becomes.
+  [[nodiscard]] Eigen::VectorXd pulse() const { return of(unit()); }
+  /// What smoothing takes off that kink: (1 - A^-1) of it, lambda A^-1 (D^2)^(order - 1) of a unit.
+  [[nodiscard]] Eigen::VectorXd taken_off() const {
+    Eigen::MatrixXd d = unit();
+    for (int i = 1; i < order_; ++i) d = second_differences(d, closed_);
+    return (order_ % 2 == 0 ? lambda_ : -lambda_) * of(d);
   }
-
-  [[nodiscard]] int size() const { return n_; }
-  [[nodiscard]] int at(int i) const { return (i % n_ + n_) % n_; }
-  [[nodiscard]] bool inside(int i) const { return closed_ || (i > 0 && i + 1 < n_); }
-  [[nodiscard]] int apart(int a, int b) const {
-    const int d = std::abs(a - b);
-    return closed_ ? std::min(d, n_ - d) : d;
-  }
-  [[nodiscard]] const Eigen::MatrixX2d& x() const { return x_; }
-  [[nodiscard]] const Eigen::MatrixX2d& y() const { return y_; }
 
  private:
-  static double weight(int a) { return a == 0 ? -2 : 1; }
-  [[nodiscard]] Eigen::RowVector2d bend(int i) const {
-    return x_.row(at(i - 1)) - 2 * x_.row(i) + x_.row(at(i + 1));
+  [[nodiscard]] Eigen::MatrixXd unit() const {
+    Eigen::MatrixXd u = Eigen::MatrixXd::Zero(n_, 1);
+    u(n_ / 2) = 1;
+    return u;
   }
 
-  Eigen::MatrixX2d y_, x_;
-  bool closed_;
   int n_;
-  double lambda_ = 1;
-  std::vector<char> free_;  ///< of every point, whether its second difference costs nothing
+  bool closed_;
+  int order_;
+  double lambda_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  Eigen::MatrixXd inverse_;
 };
 
-/// Step of the lambda that predicts best, of those from `low` to `high`.
-int best_step(SmoothingSpline& spline, const std::vector<int>& corners, int low, int high) {
-  int best = low;
-  double least = std::numeric_limits<double>::infinity();
-  for (int step = std::max(low, 1); step <= std::min(high, kLambdaSteps); ++step) {
-    spline.solve(step, corners);
-    spline.invert();
-    const double error = spline.cross_validation();
-    if (error < least) {
-      least = error;
-      best = step;
-    }
+/// An open stroke goes on beyond its ends as it came, turned about them; where it ends is told by
+/// a stiffer smoothing of a low order, since a fair curve's end is nearly straight.
+Eigen::MatrixXd with_ends(const Eigen::MatrixXd& y, int more, double cut) {
+  const int n = static_cast<int>(y.rows());
+  const Eigen::MatrixXd line = Smoothing(n, false, 2, cut).of(y);
+  Eigen::MatrixXd longer(n + 2 * more, 2);
+  longer.middleRows(more, n) = y;
+  for (int i = 1; i <= more; ++i) {
+    longer.row(more - i) = 2 * line.row(0) - y.row(i);
+    longer.row(more + n - 1 + i) = 2 * line.row(n - 1) - y.row(n - 1 - i);
   }
-  return best;
+  return longer;
 }
 
-/// The point that is a corner with most confidence; -1 when noise may make as much.
-int next_corner(SmoothingSpline& spline, int step, const std::vector<int>& corners) {
-  spline.solve(step, corners);
-  spline.invert();
-  const int n = spline.size();
-  std::vector<double> gains(n);
-  for (int i = 0; i < n; ++i) gains[i] = spline.gain(i);
-  std::vector<double> sorted = gains;
-  std::nth_element(sorted.begin(), sorted.begin() + n / 2, sorted.end());
-  // Gains of normal noise in two coordinates are exponentially distributed: ln 2 of the mean is
-  // their median, and the largest of so many independent ones about ln (their number) means.
-  const double mean = sorted[n / 2] / std::numbers::ln2;
-  const int reach =
-      std::max(3, static_cast<int>(std::lround(1.5 * std::sqrt(std::sqrt(lambda_of(step))))));
-  int best = -1;
-  for (int i = 0; i < n; ++i) {
-    const bool near = std::any_of(corners.begin(), corners.end(),
-                                  [&](int c) { return spline.apart(i, c) <= reach; });
-    if (!near && (best < 0 || gains[i] > gains[best])) best = i;
-  }
-  const double places = static_cast<double>(n) / reach;
-  return best >= 0 && gains[best] > mean * (std::log(places) + kAboveNoise) ? best : -1;
-}
+/// Kinks of a curve that is known only below a cut.
+struct Kinks {
+  std::vector<int> at;
+  Eigen::MatrixXd sizes;  ///< second difference of each
+};
 
-/// Moves each corner to where the minimum is lowest.
-void settle_corners(SmoothingSpline& spline, int step, std::vector<int>& corners) {
-  spline.solve(step, corners);
-  double least = spline.minimum();
-  for (int sweep = 0; sweep < 2; ++sweep) {
-    for (int& corner : corners) {
-      const int before = corner;
-      int best = before;
-      for (const int by : {-2, -1, 1, 2}) {
-        if (!spline.inside(before + by)) continue;
-        corner = spline.at(before + by);
-        spline.solve(step, corners);
-        if (spline.minimum() < least) {
-          least = spline.minimum();
-          best = corner;
+/// Finds kinks in the second differences of a smoothed curve, in which each is a pulse.
+class KinkSearch {
+ public:
+  /// @param half_wave  of the cut, samples: nearer kinks are one
+  KinkSearch(Eigen::MatrixXd bends, Eigen::VectorXd pulse, bool closed, int half_wave)
+      : bends_(std::move(bends)),
+        pulse_(std::move(pulse)),
+        n_(static_cast<int>(bends_.rows())),
+        closed_(closed),
+        half_wave_(half_wave) {}
+
+  /// @param first,last  samples that may be kinks
+  /// @param least       of a second difference of the smoothed curve
+  /// @param turned      least second difference of a kink
+  Kinks find(int first, int last, double least, double turned) {
+    std::vector<char> open(n_, 0);
+    std::fill(open.begin() + first, open.begin() + last + 1, char{1});
+    Eigen::MatrixXd left = bends_;
+    Kinks kinks;
+    while (std::ssize(kinks.at) < kMostCorners) {
+      int best = -1;
+      double most = least;
+      for (int i = first; i <= last; ++i) {
+        if (open[i] && left.row(i).norm() > most) {
+          most = left.row(i).norm();
+          best = i;
         }
       }
-      corner = best;
+      if (best < 0) break;
+      for (int by = -half_wave_; by <= half_wave_; ++by) {
+        if (inside(best + by)) open[wrapped(best + by)] = 0;
+      }
+      if (most < turned * pulse_(n_ / 2) || !is_pulse(left, best)) continue;
+      kinks.at.push_back(best);
+      fit(kinks);
+      left = bends_;
+      for (std::size_t k = 0; k < kinks.at.size(); ++k) {
+        for (int i = 0; i < n_; ++i) left.row(i) -= shape(i, kinks.at[k]) * kinks.sizes.row(k);
+      }
     }
+    return kinks;
   }
+
+  /// Sample `i` of what stands in the middle of `of`, brought to `at`.
+  [[nodiscard]] double moved(const Eigen::VectorXd& of, int i, int at) const {
+    const int from = i - at + n_ / 2;
+    if (closed_) return of(wrapped(from));
+    return from < 0 || from >= n_ ? 0 : of(from);
+  }
+
+ private:
+  [[nodiscard]] int wrapped(int i) const { return (i % n_ + n_) % n_; }
+  [[nodiscard]] bool inside(int i) const { return closed_ || (i >= 0 && i < n_); }
+  [[nodiscard]] double shape(int i, int at) const { return moved(pulse_, i, at); }
+
+  /// Whether a pulse makes up half of what is there.
+  [[nodiscard]] bool is_pulse(const Eigen::MatrixXd& bends, int at) const {
+    double all = 0, rest = 0;
+    for (int by = -half_wave_; by <= half_wave_; ++by) {
+      if (!inside(at + by)) continue;
+      const Eigen::RowVector2d here = bends.row(wrapped(at + by));
+      all += here.squaredNorm();
+      rest += (here - shape(at + by, at) / pulse_(n_ / 2) * bends.row(at)).squaredNorm();
+    }
+    return rest <= all / 2;
+  }
+  /// Sizes with which all pulses together are the second differences at the kinks.
+  void fit(Kinks& kinks) const {
+    const int count = static_cast<int>(kinks.at.size());
+    Eigen::MatrixXd overlaps(count, count), there(count, 2);
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b < count; ++b) overlaps(a, b) = shape(kinks.at[a], kinks.at[b]);
+      there.row(a) = bends_.row(kinks.at[a]);
+    }
+    kinks.sizes = overlaps.partialPivLu().solve(there);
+  }
+
+  Eigen::MatrixXd bends_;
+  Eigen::VectorXd pulse_;
+  int n_;
+  bool closed_;
+  int half_wave_;
+};
+
+/// Largest second difference that tremor leaves anywhere on a smoothed curve, or hardly more. What
+/// is between the shape and the tremor may be either's.
+double noisy_bend(const TremorBand& band, double cut, int samples) {
+  double tremor = 0, all = 0, between = 0;
+  for (int k = 1; k < 3 * band.waves; ++k) {
+    const double off = (k - band.waves) / std::max(band.spread, 0.5);
+    const double power = std::exp(-off * off / 2);
+    const double squared = std::pow(2 * std::sin(std::numbers::pi * k / samples), 2);
+    const double bend = std::pow(gain_of(k, cut, kOrder) * squared, 2);
+    tremor += power * bend;
+    all += power;
+    if (k < band.waves / 2) between += bend / (band.waves / 4);
+  }
+  // Squares of normal noise in two coordinates are exponentially distributed: the largest of so
+  // many independent ones is about ln (their number) means.
+  constexpr double kAbove = 5;
+  const double share = all > 0 ? tremor / all : 0;
+  const double mean = 2 * band.sigma * band.sigma * (share + band.between * between);
+  return std::sqrt(mean * (std::log(2 * cut + 1) + kAbove));
 }
 
 double largest_distance(const Points& from, const Points& to) {
@@ -220,46 +246,75 @@ double largest_distance(const Points& from, const Points& to) {
   return std::sqrt(largest);
 }
 
+/// Faired samples and which of them are corners.
+struct FairedSamples {
+  Eigen::MatrixXd x;
+  std::vector<int> corners;  ///< ascending
+};
+FairedSamples faired_samples(const TimedStroke& stroke, bool closed) {
+  const int count = static_cast<int>(stroke.samples.rows());
+  const double cut = cut_below(stroke.band);
+  const int wave = static_cast<int>(std::ceil(count / cut));
+  const int more = closed ? 0 : std::min(count - 1, 2 * wave);
+  const Eigen::MatrixXd y =
+      closed ? Eigen::MatrixXd(stroke.samples) : with_ends(stroke.samples, more, cut);
+  const int n = static_cast<int>(y.rows());
+  const Smoothing smoothing(n, closed, kOrder, cut * n / count);
+  Eigen::MatrixXd x = smoothing.of(y);
+  double step = 0;
+  for (int i = more; i + 1 < more + count; ++i) step += (x.row(i + 1) - x.row(i)).norm() / count;
+  constexpr double kLeastTurn = 0.4;  // rad
+  const int margin = closed ? 0 : std::min(wave / 2, (count - 1) / 2);
+  KinkSearch search(second_differences(x, closed), smoothing.pulse(), closed, wave / 2);
+  const Kinks kinks = search.find(more + margin, more + count - 1 - margin,
+                                  noisy_bend(stroke.band, cut, count), kLeastTurn * step);
+  const Eigen::VectorXd taken_off = smoothing.taken_off();
+  FairedSamples faired;
+  for (std::size_t k = 0; k < kinks.at.size(); ++k) {
+    for (int i = 0; i < n; ++i)
+      x.row(i) += search.moved(taken_off, i, kinks.at[k]) * kinks.sizes.row(k);
+    faired.corners.push_back(kinks.at[k] - more);
+  }
+  faired.x = x.middleRows(more, count);
+  std::sort(faired.corners.begin(), faired.corners.end());
+  return faired;
+}
+
 }  // namespace
 
-bool is_trembling(const Points& points, bool closed) {
-  constexpr std::size_t kFewPoints = 60;
-  constexpr int kFewChanges = 30;
+bool is_trembling(const Points& points, bool closed, int changes) {
   constexpr double kTurn = 0.05;  // rad: less is rounding of a straight line's points
-  if (points.size() < kFewPoints) return false;
-  const Points chain = chain_of(points, closed);
-  int changes = 0;
+  if (std::ssize(points) < 2 * changes) return false;
+  Points chain = points;
+  if (closed) chain.push_back(points.front());
+  int found = 0;
   double last = 0;
   for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
     const double turn = signed_angle(chain[i] - chain[i - 1], chain[i + 1] - chain[i]);
     if (std::abs(turn) < kTurn) continue;
-    if (turn * last < 0) ++changes;
+    if (turn * last < 0) ++found;
     last = turn;
   }
-  return changes >= kFewChanges;
+  return found >= changes;
 }
 
-std::optional<FairedStroke> fair_stroke(const Points& points, bool closed) {
-  if (!is_trembling(points, closed)) return std::nullopt;
-  const Points chain = chain_of(points, closed);
-  SmoothingSpline spline(even_samples(chain, closed), closed);
-  std::vector<int> corners;
-  int step = best_step(spline, corners, 1, kLambdaSteps);
-  while (std::ssize(corners) < kMostCorners) {
-    const int corner = next_corner(spline, step, corners);
-    if (corner < 0) break;
-    corners.push_back(corner);
-    step = best_step(spline, corners, step - 1, step + 1);
-  }
-  settle_corners(spline, std::max(step - 1, 1), corners);
-  spline.solve(std::max(step - kStepsBelow, 0), corners);
+std::optional<FairedStroke> fair_stroke(const Points& points, bool closed, int changes) {
+  if (!is_trembling(points, closed, changes)) return std::nullopt;
+  const TimedStroke stroke = in_equal_times(points, closed);
+  const FairedSamples samples = faired_samples(stroke, closed);
+  const int count = static_cast<int>(samples.x.rows());
+  const int step = (count + kMostPoints - 1) / kMostPoints;
   FairedStroke faired;
-  for (Eigen::Index i = 0; i < spline.x().rows(); ++i)
-    faired.points.emplace_back(spline.x().row(i).transpose());
-  std::sort(corners.begin(), corners.end());
-  for (const int c : corners) faired.corners.push_back(faired.points[c]);
-  faired.noise = std::sqrt((spline.y() - spline.x()).squaredNorm() / (2.0 * spline.size()));
-  faired.moved = largest_distance(points, chain_of(faired.points, closed));
+  for (int i = 0; i < count; ++i) {
+    const bool corner = std::binary_search(samples.corners.begin(), samples.corners.end(), i);
+    if (corner) faired.corners.emplace_back(samples.x.row(i).transpose());
+    if (corner || i % step == 0 || (!closed && i + 1 == count))
+      faired.points.emplace_back(samples.x.row(i).transpose());
+  }
+  faired.noise = std::sqrt((stroke.samples - samples.x).squaredNorm() / (2.0 * count));
+  Points chain = faired.points;
+  if (closed) chain.push_back(faired.points.front());
+  faired.moved = largest_distance(points, chain);
   return faired;
 }
 

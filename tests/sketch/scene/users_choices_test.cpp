@@ -107,17 +107,18 @@ TEST_F(SketchScenes, ClosesGapsUpToTheSnap) {
   EXPECT_EQ(closed->silhouettes.size(), 2U);
 }
 
+// A tremor that the raw strokes survive without crossing themselves.
 TEST_F(SketchScenes, FairsTremorUpToTheNoise) {
   write_box(kFront, kSide);
   const auto points = [&](const std::string& read) {
     const auto of =
-        scene("drawing = \"box.svg\"\nread = { tremor = { sigma = 0.004" + read + " }\n");
+        scene("drawing = \"box.svg\"\nread = { tremor = { sigma = 0.0015" + read + " }\n");
     return of->input.drawing.views.at(0).strokes.at(0).points;
   };
   const auto faired = points(" }");
   EXPECT_NE(points(" }, fairing = false"), faired);
   EXPECT_NE(points(", seed = 2 }"), faired);
-  EXPECT_THAT(error_of([&] { (void)points(" }, noise = 0.002"); }), HasSubstr("scene.read.noise"));
+  EXPECT_THAT(error_of([&] { (void)points(" }, noise = 0.001"); }), HasSubstr("scene.read.noise"));
 }
 
 // The side is drawn 10 percent higher than the front.
