@@ -29,6 +29,12 @@ constexpr double kEvenHalves = 0.02;
 constexpr double kHeldRatio = 1;
 /// Of the cost with the ratio held over that without: above it, the vectors were drawn unequal.
 constexpr double kClearGain = 3;
+/// Deviations of the ratio's logarithm above which noise does not explain it.
+constexpr double kClearRatio = 3;
+/// Deviations of the noise within which ends meet.
+constexpr double kSnapNoise = 3;
+/// What an end of a pair misses in a drawing without noise, over the diagonal.
+constexpr double kPairMiss = 5e-4;
 
 constexpr std::array<std::string_view, 4> kCompletionNames{"all", "mirror", "parallel", "none"};
 
@@ -227,8 +233,9 @@ bool is_copied(const CompletedView& completed, const CurveNet& net, const RuledP
   });
 }
 
-/// Refined with the drawn vectors' ratio held, or without it where that costs clearly less.
-RefinedDepth refine_either(const View& view, const DepthProblem& problem,
+/// Refined with the drawn vectors' ratio held, or without it where that costs clearly less and
+/// gives a ratio that noise does not explain.
+RefinedDepth refine_either(const View& view, const DepthProblem& problem, double noise,
                            const DepthSolution& linear, const OneViewOptions& options) {
   RefineOptions refine = *options.refine;
   const bool free_ratio = refine.vector_ratio == 0;
@@ -238,12 +245,17 @@ RefinedDepth refine_either(const View& view, const DepthProblem& problem,
   if (!free_ratio) return held;
   DepthProblem other = problem;
   other.plane = plane_from_pairs(view, problem.plane);
+  if (noise > 0)
+    other.pairs =
+        read_symmetric_pairs(view, problem.net, other.plane, options.pair_tolerance, noise);
   other.matches =
-      dense_matches(problem.net, problem.pairs, other.plane, options.depth.tangent_half_width);
+      dense_matches(problem.net, other.pairs, other.plane, options.depth.tangent_half_width);
   RefinedDepth found = refine_depth(view, other, solve_depth(other, options.depth), options.depth,
                                     options.vector_ratio, *options.refine);
   found.ratio_gain = held.ratio_gain = held.cost_after / std::max(found.cost_after, 1e-300);
-  return held.ratio_gain > kClearGain ? found : held;
+  const double unlike = std::abs(std::log(found.vector_ratio / options.vector_ratio));
+  const double spread = spread_of_ratio(view, problem.plane, noise);
+  return held.ratio_gain > kClearGain && unlike > kClearRatio * spread ? found : held;
 }
 
 /// Fills the patches and welds them.
@@ -269,6 +281,20 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneVi
   result.surface = builder.surface(picture_box(view, result.net));
   result.guessed_area = builder.guessed_share();
   orient_surface(result.surface.mesh);
+}
+
+FairedView faired_view(const View& view, const OneViewOptions& options) {
+  return options.fair ? faired_borders(view, options.curves.snap) : FairedView{view, 0, 0};
+}
+
+/// Ends meet within what noise moves them by; a pair counts less the less its ends are sure, beside
+/// matches, which are as sure as faired borders.
+OneViewOptions fit_for_noise(OneViewOptions options, const FairedView& faired) {
+  if (!(faired.noise > 0)) return options;
+  const double share = faired.noise / faired.diagonal;
+  options.curves.snap = std::max(options.curves.snap, kSnapNoise * share);
+  options.depth.pairs /= 1 + (share / kPairMiss) * (share / kPairMiss);
+  return options;
 }
 
 }  // namespace
@@ -297,21 +323,24 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
 
-OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& options) {
+OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& asked) {
   if (drawn.kind != ViewKind::photo)
     throw Error("reconstruction from one view needs a photo view", view_name(drawn.kind), "photo");
   OneViewResult result;
-  result.disagreement = options.disagreement;
-  const int half_width = options.depth.tangent_half_width;
-  result.planes = drawn_mirror_planes(drawn, options.vector_ratio);
-  result.completed =
-      complete_borders(options.fair ? faired_borders(drawn, options.curves.snap) : drawn,
-                       result.planes.chosen, options.curves.snap, options.complete);
+  result.disagreement = asked.disagreement;
+  result.planes = drawn_mirror_planes(drawn, asked.vector_ratio);
+  const FairedView faired = faired_view(drawn, asked);
+  result.noise = faired.noise;
+  result.completed = complete_borders(faired.view, result.planes.chosen, asked.curves.snap,
+                                      asked.complete, faired.noise);
   const View& view = result.completed.view;
   const MirrorPlane plane = result.planes.chosen;
+  const OneViewOptions options = fit_for_noise(asked, faired);
+  const int half_width = options.depth.tangent_half_width;
   result.net = build_curve_net(view, options.curves);
   DepthProblem problem{result.net, plane, {}, {}, {}, {}, {}};
-  problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
+  problem.pairs =
+      read_symmetric_pairs(view, result.net, plane, options.pair_tolerance, result.noise);
   problem.matches = dense_matches(result.net, problem.pairs, plane, half_width);
   result.matches = static_cast<int>(problem.matches.size());
   problem.ruled = sweep_ruled_patches(view, result.net, half_width, options.rulings);
@@ -324,7 +353,7 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
     if (panel.flat) problem.planar.push_back(panel.loop);
   result.depth = solve_depth(problem, options.depth);
   if (options.refine) {
-    result.refined = refine_either(view, problem, result.depth, options);
+    result.refined = refine_either(view, problem, result.noise, result.depth, options);
     result.depth = result.refined->solution;
     result.planes.chosen = result.refined->plane;
   }
@@ -339,10 +368,10 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
 
 std::string one_view_note(const View& view, const OneViewOptions& options) {
   if (view.kind != ViewKind::photo) return "";
-  const double snap = options.curves.snap;
-  return completion_note(complete_borders(options.fair ? faired_borders(view, snap) : view,
+  const FairedView faired = faired_view(view, options);
+  return completion_note(complete_borders(faired.view,
                                           drawn_mirror_planes(view, options.vector_ratio).chosen,
-                                          snap, options.complete));
+                                          options.curves.snap, options.complete, faired.noise));
 }
 
 }  // namespace geoprior::sketch

@@ -56,6 +56,7 @@ struct OneViewResult {
   DepthSolution depth;  ///< nodes of the net in space; residuals; condition
   std::vector<OneViewPatch> patches;
   TexturedSurface surface;              ///< welded; symmetric when asked for
+  double noise = 0;                     ///< of a drawn coordinate, as estimated (m)
   double disagreement = 2;              ///< of photograph and drawing (pixels)
   bool kept_positive = true;            ///< the half towards the eye was kept
   int matches = 0;                      ///< dense symmetric correspondences

@@ -69,9 +69,12 @@ struct CompletedView {
 /// Whatever is drawn, borders joined by a ruling of which one is the other's copy, to half a
 /// percent of the diagonal, are listed: they lie in parallel planes.
 ///
-/// @param snap  share of the drawing's diagonal within which ends meet
+/// @param snap   share of the drawing's diagonal within which ends meet
+/// @param noise  standard deviation of a drawn coordinate (m): ends meet within three of it too,
+/// and
+///               borders are copies to two of it
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
-                               Completion completion);
+                               Completion completion, double noise = 0);
 
 /// One sentence on what was guessed; empty when nothing was and no end is left.
 std::string completion_note(const CompletedView& completed);
