@@ -1,8 +1,11 @@
 #include "solvers/sketch/one_view.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <string_view>
 
 #include "core/connectivity.h"
@@ -33,6 +36,8 @@ constexpr double kClearGain = 3;
 constexpr double kClearRatio = 3;
 /// Deviations of the noise within which ends meet.
 constexpr double kSnapNoise = 3;
+/// Deviations of the noise below which a panel is too narrow to be sure of.
+constexpr double kNarrowPanel = 30;
 /// What an end of a pair misses in a drawing without noise, over the diagonal.
 constexpr double kPairMiss = 5e-4;
 
@@ -297,6 +302,46 @@ OneViewOptions fit_for_noise(OneViewOptions options, const FairedView& faired) {
   return options;
 }
 
+/// Least width of points, across the direction in which they reach farthest (m).
+double least_width(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d mean(0, 0);
+  for (const Eigen::Vector2d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) moment += (p - mean) * (p - mean).transpose();
+  const Eigen::Vector2d across =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(0);
+  double low = 0, high = 0;
+  for (const Eigen::Vector2d& p : points) {
+    low = std::min(low, across.dot(p - mean));
+    high = std::max(high, across.dot(p - mean));
+  }
+  return high - low;
+}
+
+/// Which panels are too narrow for the noise, in a sentence; empty when none is.
+std::string noise_note(const FairedView& faired) {
+  std::map<std::string, std::vector<Eigen::Vector2d>> borders;
+  for (const Stroke& stroke : faired.view.strokes) {
+    if (stroke.kind != StrokeKind::border) continue;
+    for (const std::string& panel : panels_in(stroke.name))
+      borders[panel].insert(borders[panel].end(), stroke.points.begin(), stroke.points.end());
+  }
+  std::string narrow;
+  for (const auto& [panel, points] : borders) {
+    if (points.empty() || least_width(points) >= kNarrowPanel * faired.noise) continue;
+    narrow += (narrow.empty() ? "'" : ", '") + panel + "'";
+  }
+  if (narrow.empty()) return "";
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(),
+                "drawn points are off by about %.2f %% of the drawing's diagonal: the sizes of "
+                "panels that are drawn ",
+                100 * faired.noise / faired.diagonal);
+  return std::string(text.data()) + "narrower than " +
+         std::to_string(static_cast<int>(kNarrowPanel)) +
+         " times that, and depth beside them, are not to be relied upon: " + narrow;
+}
+
 }  // namespace
 
 void describe(OptionVisitor& v, OneViewOptions& o) {
@@ -366,12 +411,16 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& aske
   return result;
 }
 
-std::string one_view_note(const View& view, const OneViewOptions& options) {
-  if (view.kind != ViewKind::photo) return "";
+std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& options) {
+  if (view.kind != ViewKind::photo) return {};
   const FairedView faired = faired_view(view, options);
-  return completion_note(complete_borders(faired.view,
-                                          drawn_mirror_planes(view, options.vector_ratio).chosen,
-                                          options.curves.snap, options.complete, faired.noise));
+  std::vector<std::string> notes{
+      completion_note(complete_borders(faired.view,
+                                       drawn_mirror_planes(view, options.vector_ratio).chosen,
+                                       options.curves.snap, options.complete, faired.noise)),
+      noise_note(faired)};
+  std::erase(notes, "");
+  return notes;
 }
 
 }  // namespace geoprior::sketch

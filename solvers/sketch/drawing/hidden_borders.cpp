@@ -192,6 +192,7 @@ class BorderCompletion {
   const View& view_;
   MirrorPlane plane_;
   Completion completion_;
+  double noise_;  ///< m
   double diagonal_ = 0, snap_ = 0;
   double mark_reach_ = 0, copy_evidence_ = 0;
   std::vector<PartialBorder> borders_;
@@ -203,7 +204,7 @@ class BorderCompletion {
 
 BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, double snap,
                                    Completion completion, double noise)
-    : view_(view), plane_(plane), completion_(completion) {
+    : view_(view), plane_(plane), completion_(completion), noise_(noise) {
   Eigen::AlignedBox2d box;
   for (int s = 0; s < std::ssize(view.strokes); ++s) {
     const Stroke& stroke = view.strokes[s];
@@ -411,6 +412,12 @@ bool BorderCompletion::follow(int number, const PictureCurve& model, const std::
   return whole.added > 0;
 }
 
+/// Every point to the nearest one of the model.
+void put_onto(const PictureCurve& model, PartialBorder& border) {
+  for (Stretch& stretch : border.stretches)
+    for (BorderPoint& point : stretch) point.p = point_at(model, nearest_place(model, point.p).at);
+}
+
 /// From a border that a drawn ruling joins it to.
 bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   const std::vector<Eigen::Vector2d> seen = seen_points(borders_[number]);
@@ -437,8 +444,11 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   const PartialBorder& neighbour = borders_[from];
   PictureCurve model = picture_of(neighbour.stretches.front(), neighbour.closed);
   for (Eigen::Vector2d& p : model.points) p = (*best)(p);
-  return follow(number, evenly(model, kGuessSpacing * diagonal_),
-                "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
+  model = evenly(model, kGuessSpacing * best->scale * diagonal_);
+  // Of two rims the larger is the surer one.
+  if (model.closed && best->scale < 1 && best->rms <= kCopyNoise * noise_)
+    put_onto(model, borders_[number]);
+  return follow(number, model, "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
 }
 
 /// Whether both ends of a pair lie on a border that has the panels which the pair names.
