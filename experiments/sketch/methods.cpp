@@ -74,13 +74,11 @@ std::vector<Artifact> suggestion_files(const SketchInput& input,
                       suggested_drawing_svg(align_views(input.drawing, input.align), suggestions))};
 }
 
-/// What is guessed of hidden borders.
+/// What is guessed of hidden borders, and what noise leaves unsure.
 std::vector<std::string> one_view_warnings(const SketchScene& scene,
                                            const OneViewOptions& options) {
   const View* view = scene.input.drawing.find(ViewKind::photo);
-  const std::string note = view == nullptr ? "" : one_view_note(*view, options);
-  if (note.empty()) return {};
-  return {note};
+  return view == nullptr ? std::vector<std::string>{} : one_view_notes(*view, options);
 }
 
 /// What is decided before anything is solved.

@@ -1,8 +1,11 @@
 #include "solvers/sketch/one_view.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <string_view>
 
 #include "core/connectivity.h"
@@ -29,6 +32,14 @@ constexpr double kEvenHalves = 0.02;
 constexpr double kHeldRatio = 1;
 /// Of the cost with the ratio held over that without: above it, the vectors were drawn unequal.
 constexpr double kClearGain = 3;
+/// Deviations of the ratio's logarithm above which noise does not explain it.
+constexpr double kClearRatio = 3;
+/// Deviations of the noise within which ends meet.
+constexpr double kSnapNoise = 3;
+/// Deviations of the noise below which a panel is too narrow to be sure of.
+constexpr double kNarrowPanel = 30;
+/// What an end of a pair misses in a drawing without noise, over the diagonal.
+constexpr double kPairMiss = 5e-4;
 
 constexpr std::array<std::string_view, 4> kCompletionNames{"all", "mirror", "parallel", "none"};
 
@@ -227,8 +238,9 @@ bool is_copied(const CompletedView& completed, const CurveNet& net, const RuledP
   });
 }
 
-/// Refined with the drawn vectors' ratio held, or without it where that costs clearly less.
-RefinedDepth refine_either(const View& view, const DepthProblem& problem,
+/// Refined with the drawn vectors' ratio held, or without it where that costs clearly less and
+/// gives a ratio that noise does not explain.
+RefinedDepth refine_either(const View& view, const DepthProblem& problem, double noise,
                            const DepthSolution& linear, const OneViewOptions& options) {
   RefineOptions refine = *options.refine;
   const bool free_ratio = refine.vector_ratio == 0;
@@ -238,12 +250,17 @@ RefinedDepth refine_either(const View& view, const DepthProblem& problem,
   if (!free_ratio) return held;
   DepthProblem other = problem;
   other.plane = plane_from_pairs(view, problem.plane);
+  if (noise > 0)
+    other.pairs =
+        read_symmetric_pairs(view, problem.net, other.plane, options.pair_tolerance, noise);
   other.matches =
-      dense_matches(problem.net, problem.pairs, other.plane, options.depth.tangent_half_width);
+      dense_matches(problem.net, other.pairs, other.plane, options.depth.tangent_half_width);
   RefinedDepth found = refine_depth(view, other, solve_depth(other, options.depth), options.depth,
                                     options.vector_ratio, *options.refine);
   found.ratio_gain = held.ratio_gain = held.cost_after / std::max(found.cost_after, 1e-300);
-  return held.ratio_gain > kClearGain ? found : held;
+  const double unlike = std::abs(std::log(found.vector_ratio / options.vector_ratio));
+  const double spread = spread_of_ratio(view, problem.plane, noise);
+  return held.ratio_gain > kClearGain && unlike > kClearRatio * spread ? found : held;
 }
 
 /// Fills the patches and welds them.
@@ -269,6 +286,60 @@ void fill_patches(const View& view, const std::vector<DrawnPanel>& panels, OneVi
   result.surface = builder.surface(picture_box(view, result.net));
   result.guessed_area = builder.guessed_share();
   orient_surface(result.surface.mesh);
+}
+
+FairedView faired_view(const View& view, const OneViewOptions& options) {
+  return options.fair ? faired_borders(view, options.curves.snap) : FairedView{view, 0, 0};
+}
+
+/// Ends meet within what noise moves them by; a pair counts less the less its ends are sure, beside
+/// matches, which are as sure as faired borders.
+OneViewOptions fit_for_noise(OneViewOptions options, const FairedView& faired) {
+  if (!(faired.noise > 0)) return options;
+  const double share = faired.noise / faired.diagonal;
+  options.curves.snap = std::max(options.curves.snap, kSnapNoise * share);
+  options.depth.pairs /= 1 + (share / kPairMiss) * (share / kPairMiss);
+  return options;
+}
+
+/// Least width of points, across the direction in which they reach farthest (m).
+double least_width(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d mean(0, 0);
+  for (const Eigen::Vector2d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) moment += (p - mean) * (p - mean).transpose();
+  const Eigen::Vector2d across =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(0);
+  double low = 0, high = 0;
+  for (const Eigen::Vector2d& p : points) {
+    low = std::min(low, across.dot(p - mean));
+    high = std::max(high, across.dot(p - mean));
+  }
+  return high - low;
+}
+
+/// Which panels are too narrow for the noise, in a sentence; empty when none is.
+std::string noise_note(const FairedView& faired) {
+  std::map<std::string, std::vector<Eigen::Vector2d>> borders;
+  for (const Stroke& stroke : faired.view.strokes) {
+    if (stroke.kind != StrokeKind::border) continue;
+    for (const std::string& panel : panels_in(stroke.name))
+      borders[panel].insert(borders[panel].end(), stroke.points.begin(), stroke.points.end());
+  }
+  std::string narrow;
+  for (const auto& [panel, points] : borders) {
+    if (points.empty() || least_width(points) >= kNarrowPanel * faired.noise) continue;
+    narrow += (narrow.empty() ? "'" : ", '") + panel + "'";
+  }
+  if (narrow.empty()) return "";
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(),
+                "drawn points are off by about %.2f %% of the drawing's diagonal: the sizes of "
+                "panels that are drawn ",
+                100 * faired.noise / faired.diagonal);
+  return std::string(text.data()) + "narrower than " +
+         std::to_string(static_cast<int>(kNarrowPanel)) +
+         " times that, and depth beside them, are not to be relied upon: " + narrow;
 }
 
 }  // namespace
@@ -297,21 +368,24 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
                  {.doc = "non-linear least squares with the mirror plane free, after the linear"});
 }
 
-OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& options) {
+OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& asked) {
   if (drawn.kind != ViewKind::photo)
     throw Error("reconstruction from one view needs a photo view", view_name(drawn.kind), "photo");
   OneViewResult result;
-  result.disagreement = options.disagreement;
-  const int half_width = options.depth.tangent_half_width;
-  result.planes = drawn_mirror_planes(drawn, options.vector_ratio);
-  result.completed =
-      complete_borders(options.fair ? faired_borders(drawn, options.curves.snap) : drawn,
-                       result.planes.chosen, options.curves.snap, options.complete);
+  result.disagreement = asked.disagreement;
+  result.planes = drawn_mirror_planes(drawn, asked.vector_ratio);
+  const FairedView faired = faired_view(drawn, asked);
+  result.noise = faired.noise;
+  result.completed = complete_borders(faired.view, result.planes.chosen, asked.curves.snap,
+                                      asked.complete, faired.noise);
   const View& view = result.completed.view;
   const MirrorPlane plane = result.planes.chosen;
+  const OneViewOptions options = fit_for_noise(asked, faired);
+  const int half_width = options.depth.tangent_half_width;
   result.net = build_curve_net(view, options.curves);
   DepthProblem problem{result.net, plane, {}, {}, {}, {}, {}};
-  problem.pairs = read_symmetric_pairs(view, result.net, plane, options.pair_tolerance);
+  problem.pairs =
+      read_symmetric_pairs(view, result.net, plane, options.pair_tolerance, result.noise);
   problem.matches = dense_matches(result.net, problem.pairs, plane, half_width);
   result.matches = static_cast<int>(problem.matches.size());
   problem.ruled = sweep_ruled_patches(view, result.net, half_width, options.rulings);
@@ -324,7 +398,7 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
     if (panel.flat) problem.planar.push_back(panel.loop);
   result.depth = solve_depth(problem, options.depth);
   if (options.refine) {
-    result.refined = refine_either(view, problem, result.depth, options);
+    result.refined = refine_either(view, problem, result.noise, result.depth, options);
     result.depth = result.refined->solution;
     result.planes.chosen = result.refined->plane;
   }
@@ -337,12 +411,16 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& opti
   return result;
 }
 
-std::string one_view_note(const View& view, const OneViewOptions& options) {
-  if (view.kind != ViewKind::photo) return "";
-  const double snap = options.curves.snap;
-  return completion_note(complete_borders(options.fair ? faired_borders(view, snap) : view,
-                                          drawn_mirror_planes(view, options.vector_ratio).chosen,
-                                          snap, options.complete));
+std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& options) {
+  if (view.kind != ViewKind::photo) return {};
+  const FairedView faired = faired_view(view, options);
+  std::vector<std::string> notes{
+      completion_note(complete_borders(faired.view,
+                                       drawn_mirror_planes(view, options.vector_ratio).chosen,
+                                       options.curves.snap, options.complete, faired.noise)),
+      noise_note(faired)};
+  std::erase(notes, "");
+  return notes;
 }
 
 }  // namespace geoprior::sketch

@@ -56,6 +56,7 @@ struct OneViewResult {
   DepthSolution depth;  ///< nodes of the net in space; residuals; condition
   std::vector<OneViewPatch> patches;
   TexturedSurface surface;              ///< welded; symmetric when asked for
+  double noise = 0;                     ///< of a drawn coordinate, as estimated (m)
   double disagreement = 2;              ///< of photograph and drawing (pixels)
   bool kept_positive = true;            ///< the half towards the eye was kept
   int matches = 0;                      ///< dense symmetric correspondences
@@ -65,7 +66,9 @@ struct OneViewResult {
 
 /// Developable surface from one annotated view (thesis 2.1.3; Fondevilla et al. 2017).
 ///
-/// 0. Trembling borders are faired (`faired_borders`). Hidden parts of borders are completed where
+/// 0. Trembling borders are faired (`faired_borders`). The noise that they had tells within what
+///    ends meet (three deviations at least), and how little pairs weigh beside dense matches (5e-4
+///    of the diagonal as good as exact). Hidden parts of borders are completed where
 /// only what is visible is drawn
 ///    (`complete_borders`).
 /// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
@@ -74,8 +77,9 @@ struct OneViewResult {
 /// 2. Depth is the minimum of one quadratic energy (`solve_depth`); with `refine`, depth and mirror
 ///    plane are then improved together (`refine_depth`): with the drawn vectors' lengths held to
 ///    their ratio, as the linear system takes them, and, where `vector_ratio` of the refinement is
-///    0, with the ratio free. The free one is kept when its cost is clearly less: in a flat view,
-///    where the ratio alone tells the plane, both cost the same.
+///    0, with the ratio free. The free one is kept when its cost is clearly less, and noise does
+///    not explain its ratio (`spread_of_ratio`): in a flat view, where the ratio alone tells the
+///    plane, both cost the same.
 /// 3. Ruled patches become strips, other named panels fair patches; borders are shared, so that
 ///    patches are welded. With `mirror`, the half whose borders are more visible is kept (the one
 ///    towards the eye when both are within 2 %), and its mirror image joined along the plane.
@@ -92,7 +96,9 @@ struct OneViewResult {
 /// @throws Error  on anything that the steps refuse, with the ids of strokes
 OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options);
 
-/// What was guessed of hidden borders, in a sentence; empty when nothing was.
-std::string one_view_note(const View& view, const OneViewOptions& options);
+/// A sentence each on what was guessed of hidden borders, and on panels that are drawn narrower
+/// than thirty deviations of the noise, whose sizes are then not sure; none when there is nothing
+/// to say.
+std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& options);
 
 }  // namespace geoprior::sketch

@@ -293,8 +293,8 @@ void describe(OptionVisitor& v, DepthOptions& o) {
   weight("parallel_planes", o.parallel_planes,
          "weight of parallel planes of both borders of a ruled patch");
   weight("copied_planes", o.copied_planes,
-         "the same of patches of which one border is the other's copy in the picture, when "
-         "parallel_planes is 0");
+         "weight of parallel planes of both borders of a ruled patch of which one is the other's "
+         "copy in the picture, when parallel_planes is 0");
   v.value("tangent_half_width", o.tangent_half_width,
           {.doc = "nodes on either side in the fit of a tangent", .min = 1, .max = 100});
   v.value("end_angle_deg", o.end_angle_deg,

@@ -4,6 +4,9 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
 
 #include "core/angles.h"
 #include "core/geometry/planar.h"
@@ -15,8 +18,6 @@ namespace {
 constexpr std::size_t kLeastPoints = 12;
 /// Chord that nineteen of twenty are shorter than, over the median.
 constexpr double kUneven = 3.5;
-/// Of the estimated noise: by which points are moved.
-constexpr double kMoved = 0.92;
 /// Of the borders' diagonal: below it nothing trembles.
 constexpr double kLeastTremor = 2e-4;
 constexpr double kFairCorner = 60 * kDegree;
@@ -77,44 +78,117 @@ std::vector<std::size_t> smooth_parts(const std::vector<Eigen::Vector2d>& points
   return cuts;
 }
 
+/// A stretch of a border without a corner.
+struct BorderPart {
+  std::size_t stroke = 0, begin = 0, end = 0;  ///< numbers of its first and its last point
+  bool closed = false;
+  std::array<bool, 2> hold{false, false};
+};
+
+/// The minimum of |x - y|^2 + lambda |third differences of x|^2, and how likely lambda is.
+///
+/// Third differences are taken for independent normal numbers of variance s^2 / lambda, noise for
+/// independent of variance s^2. With r = rank D and q = y.(y - x) over both coordinates,
+/// minus twice the logarithm of the likelihood of D y is, up to constants,
+///   q / s^2 + 2 r log s^2 + 2 (log det (I + lambda D'D) - r log lambda),
+/// which s^2 = q / (2 r) minimises (restricted maximum likelihood: Wahba 1985).
+class SmoothedLine {
+ public:
+  SmoothedLine(const std::vector<Eigen::Vector2d>& points, bool closed)
+      : y_(points.size(), 2), n_(static_cast<int>(points.size())), closed_(closed) {
+    for (int i = 0; i < n_; ++i) y_.row(i) = points[static_cast<std::size_t>(i)].transpose();
+    D_ = third_differences(n_, closed);
+    DtD_ = D_.transpose() * D_;
+    weight_ = Eigen::VectorXd::Ones(n_);
+    x_ = y_;
+    LineMatrix pattern = DtD_;
+    for (int i = 0; i < n_; ++i) pattern.coeffRef(i, i) += 1;
+    factor_.analyze(pattern);
+  }
+
+  /// Standard deviation from the median third difference.
+  [[nodiscard]] double tremor() const {
+    const Eigen::MatrixX2d third = D_ * y_;
+    std::vector<double> sizes;
+    for (Eigen::Index r = 0; r < third.rows(); ++r)
+      for (int k = 0; k < 2; ++k) sizes.push_back(std::abs(third(r, k)));
+    return median_of(std::move(sizes)) / (0.6745 * std::sqrt(20.0));
+  }
+
+  void solve(double logarithm) {
+    logarithm_ = logarithm;
+    LineMatrix A = std::pow(10.0, logarithm) * DtD_;
+    for (int i = 0; i < n_; ++i) A.coeffRef(i, i) += weight_(i);
+    factor_.factorize(A);
+    x_ = factor_.solve_columns(weight_.asDiagonal() * y_);
+  }
+
+  /// Logarithm of the likeliest lambda, for this noise; 0: for the likeliest noise.
+  [[nodiscard]] double likeliest(double noise) {
+    constexpr double kLow = -2, kHigh = 9, kStep = 0.25;
+    double best = kLow, least = std::numeric_limits<double>::infinity();
+    for (double at = kLow; at <= kHigh; at += kStep) {
+      solve(at);
+      const double value = unlikeliness(noise);
+      if (value >= least) continue;
+      least = value;
+      best = at;
+    }
+    return best;
+  }
+
+  void hold(std::array<bool, 2> ends) {
+    constexpr double kHeld = 1e8;
+    if (ends[0]) weight_(0) = kHeld;
+    if (ends[1]) weight_(n_ - 1) = kHeld;
+  }
+
+  [[nodiscard]] double square() const { return y_.cwiseProduct(y_ - x_).sum(); }
+  /// Coordinates that tell the noise.
+  [[nodiscard]] int freedom() const { return 2 * (closed_ ? n_ - 1 : n_ - 3); }
+  [[nodiscard]] double noise() const { return std::sqrt(square() / freedom()); }
+  [[nodiscard]] Eigen::Vector2d point(std::size_t i) const {
+    return x_.row(static_cast<Eigen::Index>(i)).transpose();
+  }
+
+ private:
+  [[nodiscard]] double unlikeliness(double noise) const {
+    const double fit = noise > 0 ? square() / (noise * noise) : freedom() * std::log(square());
+    return fit + 2 * factor_.pivots().array().log().sum() -
+           freedom() * logarithm_ * std::numbers::ln10;
+  }
+
+  Eigen::MatrixX2d y_, x_;
+  int n_;
+  bool closed_;
+  LineMatrix D_, DtD_;
+  Eigen::VectorXd weight_;
+  double logarithm_ = 0;
+  SparseLdlt factor_;
+};
+
 }  // namespace
 
 FairedLine fair_line(const std::vector<Eigen::Vector2d>& points, bool closed,
-                     std::array<bool, 2> hold, double least) {
-  FairedLine faired{points, 0};
+                     std::array<bool, 2> hold, double least, double noise) {
+  FairedLine faired{points, 0, 0};
   if (points.size() < kLeastPoints || !is_even(points, closed)) return faired;
-  const int n = static_cast<int>(points.size());
-  Eigen::MatrixX2d y(n, 2);
-  for (int i = 0; i < n; ++i) y.row(i) = points[static_cast<std::size_t>(i)].transpose();
-  const LineMatrix D = third_differences(n, closed);
-  const Eigen::MatrixX2d third = D * y;
-  std::vector<double> sizes;
-  for (Eigen::Index r = 0; r < third.rows(); ++r)
-    for (int k = 0; k < 2; ++k) sizes.push_back(std::abs(third(r, k)));
-  faired.noise = median_of(std::move(sizes)) / (0.6745 * std::sqrt(20.0));
+  SmoothedLine line(points, closed);
+  faired.noise = line.tremor();
   if (faired.noise < least) return faired;
-  Eigen::VectorXd weight = Eigen::VectorXd::Ones(n);
-  constexpr double kHeld = 1e8;
-  if (!closed && hold[0]) weight(0) = kHeld;
-  if (!closed && hold[1]) weight(n - 1) = kHeld;
-  const LineMatrix DtD = D.transpose() * D;
-  Eigen::MatrixX2d x = y;
-  double low = -4, high = 10;  // of log10 lambda
-  constexpr int kHalvings = 24;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = (low + high) / 2;
-    LineMatrix A = std::pow(10.0, middle) * DtD;
-    for (int i = 0; i < n; ++i) A.coeffRef(i, i) += weight(i);
-    const SparseLdlt factor(A);
-    for (int c = 0; c < 2; ++c) x.col(c) = factor.solve(weight.cwiseProduct(y.col(c)));
-    const double moved = std::sqrt((x - y).squaredNorm() / (2.0 * n));
-    (moved < kMoved * faired.noise ? low : high) = middle;
+  const double logarithm = line.likeliest(noise);
+  line.solve(logarithm);
+  faired.freedom = line.freedom();
+  faired.noise = line.noise();
+  if (!closed && (hold[0] || hold[1])) {
+    line.hold(hold);
+    line.solve(logarithm);
   }
-  for (int i = 0; i < n; ++i) faired.points[static_cast<std::size_t>(i)] = x.row(i).transpose();
+  for (std::size_t i = 0; i < points.size(); ++i) faired.points[i] = line.point(i);
   return faired;
 }
 
-View faired_borders(const View& view, double snap) {
+FairedView faired_borders(const View& view, double snap) {
   Eigen::AlignedBox2d box;
   std::vector<Eigen::Vector2d> ends;
   for (const Stroke& stroke : view.strokes) {
@@ -131,23 +205,38 @@ View faired_borders(const View& view, double snap) {
              return (other - end).norm() <= snap * diagonal;
            }) > 1;
   };
-  View faired = view;
-  for (Stroke& stroke : faired.strokes) {
+  std::vector<BorderPart> parts;
+  for (std::size_t b = 0; b < view.strokes.size(); ++b) {
+    const Stroke& stroke = view.strokes[b];
     if (stroke.kind != StrokeKind::border || stroke.points.size() < kLeastPoints) continue;
     const std::vector<std::size_t> cuts = smooth_parts(stroke.points);
-    if (cuts.size() == 2) {
-      stroke.points = fair_line(stroke.points, stroke.closed,
-                                {meets(stroke.points.front()), meets(stroke.points.back())},
-                                kLeastTremor * diagonal)
-                          .points;
-      continue;
-    }
+    const bool whole = cuts.size() == 2;
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-      const auto begin = stroke.points.begin() + static_cast<std::ptrdiff_t>(cuts[k]);
-      const auto end = stroke.points.begin() + static_cast<std::ptrdiff_t>(cuts[k + 1]) + 1;
-      const FairedLine part = fair_line({begin, end}, false, {true, true}, kLeastTremor * diagonal);
-      std::copy(part.points.begin(), part.points.end(), begin);
+      parts.push_back(
+          {b, cuts[k], cuts[k + 1], whole && stroke.closed,
+           whole ? std::array<bool, 2>{meets(stroke.points.front()), meets(stroke.points.back())}
+                 : std::array<bool, 2>{true, true}});
     }
+  }
+  const auto fair = [&](const BorderPart& part, double noise) {
+    const std::vector<Eigen::Vector2d>& points = view.strokes[part.stroke].points;
+    return fair_line({points.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(part.end) + 1},
+                     part.closed, part.hold, kLeastTremor * diagonal, noise);
+  };
+  double square = 0;
+  int freedom = 0;
+  for (const BorderPart& part : parts) {
+    const FairedLine line = fair(part, 0);
+    square += line.freedom * line.noise * line.noise;
+    freedom += line.freedom;
+  }
+  FairedView faired{view, freedom > 0 ? std::sqrt(square / freedom) : 0, diagonal};
+  for (const BorderPart& part : parts) {
+    const FairedLine line = fair(part, faired.noise);
+    std::copy(
+        line.points.begin(), line.points.end(),
+        faired.view.strokes[part.stroke].points.begin() + static_cast<std::ptrdiff_t>(part.begin));
   }
   return faired;
 }

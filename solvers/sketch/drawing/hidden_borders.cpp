@@ -33,6 +33,11 @@ constexpr double kEndPart = 0.04;
 constexpr double kGuessSpacing = 1.0 / 150;
 /// To which a border is the parallel copy of another.
 constexpr double kCopyEvidence = 0.005;
+/// The same in deviations of the noise: within which ends meet, marks lie on borders, and a border
+/// is a copy.
+constexpr double kSnapNoise = 3;
+constexpr double kMarkNoise = 5;
+constexpr double kCopyNoise = 2;
 /// What must be seen of a rim that goes round: five ninths of its ellipse, or 130 degrees of it
 /// between silhouettes of its own panel.
 constexpr double kRimSpan = 200 * kDegree;
@@ -154,7 +159,8 @@ struct BorderRuling {
 
 class BorderCompletion {
  public:
-  BorderCompletion(const View& view, const MirrorPlane& plane, double snap, Completion completion);
+  BorderCompletion(const View& view, const MirrorPlane& plane, double snap, Completion completion,
+                   double noise);
   CompletedView complete();
   /// Strokes of the drawing.
   [[nodiscard]] std::vector<std::array<int, 2>> parallel_borders();
@@ -186,7 +192,9 @@ class BorderCompletion {
   const View& view_;
   MirrorPlane plane_;
   Completion completion_;
+  double noise_;  ///< m
   double diagonal_ = 0, snap_ = 0;
+  double mark_reach_ = 0, copy_evidence_ = 0;
   std::vector<PartialBorder> borders_;
   std::vector<BorderRuling> rulings_;
   std::vector<GuessedStretch> guesses_;
@@ -195,8 +203,8 @@ class BorderCompletion {
 };
 
 BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, double snap,
-                                   Completion completion)
-    : view_(view), plane_(plane), completion_(completion) {
+                                   Completion completion, double noise)
+    : view_(view), plane_(plane), completion_(completion), noise_(noise) {
   Eigen::AlignedBox2d box;
   for (int s = 0; s < std::ssize(view.strokes); ++s) {
     const Stroke& stroke = view.strokes[s];
@@ -212,7 +220,10 @@ BorderCompletion::BorderCompletion(const View& view, const MirrorPlane& plane, d
     if (!pair->points.empty()) pairs_.push_back(*pair);
   drawn_pairs_ = pairs_.size();
   diagonal_ = box.isEmpty() ? 0 : box.diagonal().norm();
-  snap_ = snap * diagonal_;
+  snap_ = std::max(snap * diagonal_, kSnapNoise * noise);
+  mark_reach_ =
+      std::max({kMarkReach * snap * diagonal_, kMarkHand * diagonal_, kMarkNoise * noise});
+  copy_evidence_ = std::max(kCopyEvidence * diagonal_, kCopyNoise * noise);
 }
 
 double BorderCompletion::distance_to(const PartialBorder& border, const Eigen::Vector2d& p) const {
@@ -327,7 +338,7 @@ void BorderCompletion::find_rulings() {
     BorderRuling found;
     found.end = {stroke.points.front(), stroke.points.back()};
     for (int k = 0; k < 2; ++k) {
-      double least = std::max(kMarkReach * snap_, kMarkHand * diagonal_);
+      double least = mark_reach_;
       for (int b = 0; b < std::ssize(borders_); ++b) {
         const std::vector<std::string>& panels = borders_[b].panels;
         const bool named = stroke.name.empty() ||
@@ -401,6 +412,12 @@ bool BorderCompletion::follow(int number, const PictureCurve& model, const std::
   return whole.added > 0;
 }
 
+/// Every point to the nearest one of the model.
+void put_onto(const PictureCurve& model, PartialBorder& border) {
+  for (Stretch& stretch : border.stretches)
+    for (BorderPoint& point : stretch) point.p = point_at(model, nearest_place(model, point.p).at);
+}
+
 /// From a border that a drawn ruling joins it to.
 bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   const std::vector<Eigen::Vector2d> seen = seen_points(borders_[number]);
@@ -427,8 +444,11 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   const PartialBorder& neighbour = borders_[from];
   PictureCurve model = picture_of(neighbour.stretches.front(), neighbour.closed);
   for (Eigen::Vector2d& p : model.points) p = (*best)(p);
-  return follow(number, evenly(model, kGuessSpacing * diagonal_),
-                "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
+  model = evenly(model, kGuessSpacing * best->scale * diagonal_);
+  // Of two rims the larger is the surer one.
+  if (model.closed && best->scale < 1 && best->rms <= kCopyNoise * noise_)
+    put_onto(model, borders_[number]);
+  return follow(number, model, "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
 }
 
 /// Whether both ends of a pair lie on a border that has the panels which the pair names.
@@ -438,7 +458,7 @@ bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) 
     return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
   });
   if (!named) return false;
-  const double reach = std::max(kMarkReach * snap_, kMarkHand * diagonal_);
+  const double reach = mark_reach_;
   // Where others of the same panels are nearer, the pair belongs to them.
   for (const Eigen::Vector2d& end : {pair.points.front(), pair.points.back()}) {
     const double own = distance_to(border, end);
@@ -479,7 +499,7 @@ bool BorderCompletion::between_own_silhouettes(int number) const {
   const auto at_ruling = [&](const Eigen::Vector2d& end) {
     return std::any_of(rulings_.begin(), rulings_.end(), [&](const BorderRuling& r) {
       for (int k = 0; k < 2; ++k)
-        if (r.border[k] == number && (r.end[k] - end).norm() <= kMarkReach * snap_) return true;
+        if (r.border[k] == number && (r.end[k] - end).norm() <= mark_reach_) return true;
       return false;
     });
   };
@@ -621,7 +641,7 @@ std::vector<std::array<int, 2>> BorderCompletion::parallel_borders() {
                  2 * kGuessSpacing * diagonal_);
       const std::optional<ParallelCopy> copy =
           fit_parallel_copy(whole, seen_points(borders_[b]), {hints.rulings, {}});
-      if (copy && copy->rms <= kCopyEvidence * diagonal_)
+      if (copy && copy->rms <= copy_evidence_)
         copies.push_back({borders_[a].stroke, borders_[b].stroke});
     }
   }
@@ -771,18 +791,18 @@ DrawnPlace CompletedView::place(int stroke, double at) const {
 }
 
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
-                               Completion completion) {
+                               Completion completion, double noise) {
   const bool marked = !strokes_of(view, StrokeKind::occlusion).empty();
   CompletedView drawn = as_drawn(view);
   if (completion == Completion::none || !(drawn.drawn_length > 0)) return drawn;
   if (marked) {
-    drawn.copies = BorderCompletion(view, plane, snap, completion).parallel_borders();
+    drawn.copies = BorderCompletion(view, plane, snap, completion, noise).parallel_borders();
     return drawn;
   }
-  CompletedView completed = BorderCompletion(view, plane, snap, completion).complete();
+  CompletedView completed = BorderCompletion(view, plane, snap, completion, noise).complete();
   if (!completed.guesses.empty()) return completed;
   drawn.open_ends = std::move(completed.open_ends);
-  drawn.copies = BorderCompletion(view, plane, snap, completion).parallel_borders();
+  drawn.copies = BorderCompletion(view, plane, snap, completion, noise).parallel_borders();
   return drawn;
 }
 

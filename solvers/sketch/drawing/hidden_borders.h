@@ -54,7 +54,9 @@ struct CompletedView {
 ///    "rim-2") or meeting smoothly.
 /// 2. What a border lacks comes from a whole border that a drawn ruling joins it to, as its
 ///    parallel copy (`ParallelCopy`: parts of cones and cylinders are bounded by parallel planes,
-///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one.
+///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one. What
+///    is seen of a rim that is smaller than its neighbour, and on the copy but for noise, is put
+///    there.
 /// 3. A rim whose ends are both covered, and which is seen for more than five ninths of an ellipse
 ///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen and
 ///    its mirror image.
@@ -69,9 +71,12 @@ struct CompletedView {
 /// Whatever is drawn, borders joined by a ruling of which one is the other's copy, to half a
 /// percent of the diagonal, are listed: they lie in parallel planes.
 ///
-/// @param snap  share of the drawing's diagonal within which ends meet
+/// @param snap   share of the drawing's diagonal within which ends meet
+/// @param noise  standard deviation of a drawn coordinate (m): ends meet within three of it too,
+/// and
+///               borders are copies to two of it
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
-                               Completion completion);
+                               Completion completion, double noise = 0);
 
 /// One sentence on what was guessed; empty when nothing was and no end is left.
 std::string completion_note(const CompletedView& completed);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "core/error.h"
@@ -65,6 +66,31 @@ const Stroke& named_vector(const View& view, const std::string& name) {
   return *found;
 }
 
+/// Sum of d d' over the pairs.
+Eigen::Matrix2d moment_of_pairs(const View& view) {
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+  for (const Stroke* pair : strokes_of(view, StrokeKind::symmetric_pair)) {
+    const Eigen::Vector2d d = pair->points.back() - pair->points.front();
+    moment += d * d.transpose();
+  }
+  return moment;
+}
+
+/// The plane whose normal has this direction in the picture and in which both vectors are
+/// orthogonal; `drawn` where there is none.
+MirrorPlane right_angled_plane(const View& view, const MirrorPlane& drawn, Eigen::Vector2d u) {
+  const Stroke& first = named_vector(view, "sym-a");
+  const Stroke& second = named_vector(view, "sym-b");
+  const Eigen::Vector2d a = first.points.back() - first.points.front();
+  const Eigen::Vector2d b = second.points.back() - second.points.front();
+  if (u.dot(drawn.normal.head<2>()) < 0) u = -u;
+  const double square = -a.dot(b) / (u.dot(a) * u.dot(b));
+  if (!(square > 0) || !std::isfinite(square)) return drawn;
+  const Eigen::Vector3d normal =
+      Eigen::Vector3d(u.x() * std::sqrt(square), u.y() * std::sqrt(square), 1).normalized();
+  return {normal, normal.head<2>().dot(first.points.front())};
+}
+
 }  // namespace
 
 Eigen::Vector3d mirrored(const MirrorPlane& plane, const Eigen::Vector3d& point) {
@@ -106,23 +132,29 @@ MirrorPlanes drawn_mirror_planes(const View& view, double ratio) {
 }
 
 MirrorPlane plane_from_pairs(const View& view, const MirrorPlane& drawn) {
-  const Stroke& first = named_vector(view, "sym-a");
-  const Stroke& second = named_vector(view, "sym-b");
-  const Eigen::Vector2d a = first.points.back() - first.points.front();
-  const Eigen::Vector2d b = second.points.back() - second.points.front();
-  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
-  for (const Stroke* pair : strokes_of(view, StrokeKind::symmetric_pair)) {
-    const Eigen::Vector2d d = pair->points.back() - pair->points.front();
-    moment += d * d.transpose();
-  }
+  const Eigen::Matrix2d moment = moment_of_pairs(view);
   if (!(moment.trace() > 0)) return drawn;
-  Eigen::Vector2d u = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(1);
-  if (u.dot(drawn.normal.head<2>()) < 0) u = -u;
-  const double square = -a.dot(b) / (u.dot(a) * u.dot(b));
-  if (!(square > 0) || !std::isfinite(square)) return drawn;
-  const Eigen::Vector3d normal =
-      Eigen::Vector3d(u.x() * std::sqrt(square), u.y() * std::sqrt(square), 1).normalized();
-  return {normal, normal.head<2>().dot(first.points.front())};
+  const Eigen::Vector2d u =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(1);
+  return right_angled_plane(view, drawn, u);
+}
+
+double spread_of_ratio(const View& view, const MirrorPlane& drawn, double noise) {
+  const Eigen::Matrix2d moment = moment_of_pairs(view);
+  if (!(noise > 0) || !(moment.trace() > 0)) return 0;
+  const Eigen::Vector2d u =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moment).eigenvectors().col(1);
+  const Eigen::Vector2d a = drawn_vector(named_vector(view, "sym-a"));
+  const Eigen::Vector2d b = drawn_vector(named_vector(view, "sym-b"));
+  // Both ends of every pair are off.
+  const double turn = std::numbers::sqrt2 * noise / std::sqrt(moment.trace());
+  const auto ratio = [&](double angle) {
+    const Eigen::Vector3d n = right_angled_plane(view, drawn, Eigen::Rotation2Dd(angle) * u).normal;
+    return std::hypot(a.norm(), n.head<2>().dot(a) / n.z()) /
+           std::hypot(b.norm(), n.head<2>().dot(b) / n.z());
+  };
+  const double lengths = std::numbers::sqrt2 * noise * std::hypot(1 / a.norm(), 1 / b.norm());
+  return std::hypot(std::log(ratio(turn) / ratio(-turn)) / 2, lengths);
 }
 
 Eigen::Matrix3d drawn_object_frame(const View& view, const MirrorPlane& plane) {

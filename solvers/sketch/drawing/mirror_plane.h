@@ -58,6 +58,10 @@ MirrorPlanes drawn_mirror_planes(const View& view, double ratio = 1);
 /// pair has a length, the plane is `drawn`.
 MirrorPlane plane_from_pairs(const View& view, const MirrorPlane& drawn);
 
+/// Standard deviation of the logarithm of |a3| / |b3| in the plane from pairs, of ends that are off
+/// by `noise` in each coordinate: of the pairs' common direction, and of the two lengths.
+double spread_of_ratio(const View& view, const MirrorPlane& drawn, double noise);
+
 /// Frame of the object in the view, from the chosen plane: rows are its normal, the direction of
 /// sym-a in space, and the direction orthogonal to both.
 /// @throws Error  when sym-a is missing

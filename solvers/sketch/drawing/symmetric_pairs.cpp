@@ -15,6 +15,12 @@ namespace {
 constexpr double kPairReach = 2;
 /// And by this share of the diagonal, however finely ends are snapped.
 constexpr double kPairHand = 0.03;
+/// Variance of a faired border over that of a drawn point.
+constexpr double kBorderVariance = 0.1;
+/// Deviations by which an end slides at most.
+constexpr double kMostSlide = 3;
+/// Nodes on either side in the fit of the direction in which an end slides.
+constexpr int kSlideHalfWidth = 3;
 
 /// The place and, where it is a node of other curves too, its places on them.
 std::vector<CurvePoint> all_places(const CurveNet& net, const CurvePoint& place) {
@@ -87,7 +93,45 @@ std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const std::vector
   return best;
 }
 
-SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
+/// An end that may slide along its border.
+struct SlidingEnd {
+  CurvePoint& place;
+  double step = 0;  ///< m, that a number stands for
+  double rate = 0;  ///< of the miss, a metre along the border
+
+  SlidingEnd(const CurveNet& net, std::vector<CurvePoint>& places, const Eigen::Vector2d& across)
+      : place(places.front()) {
+    const SketchCurve& curve = net.curves[place.curve];
+    const bool at_end = !curve.closed && (place.at <= 1 || place.at >= curve.size() - 2);
+    if (places.size() > 1 || at_end) return;
+    const Eigen::Vector2d tangent = evaluate(net, tangent_form(curve, place.at, kSlideHalfWidth));
+    step = tangent.norm();
+    if (step > 0) rate = across.dot(tangent) / step;
+  }
+  void slide(const CurveNet& net, double by) {
+    if (!(step > 0)) return;
+    const SketchCurve& curve = net.curves[place.curve];
+    place.at += by / step;
+    const double n = curve.size();
+    if (curve.closed) place.at -= n * std::floor(place.at / n);
+    if (!curve.closed) place.at = std::clamp(place.at, 0.0, n - 1);
+  }
+};
+
+/// Lets both ends slide to where the pair runs along the normal.
+void slide_ends(SymmetricPair& pair, const CurveNet& net, const MirrorPlane& plane, double noise) {
+  const Eigen::Vector2d across = across_pairs(plane);
+  SlidingEnd point(net, pair.point_at, across), image(net, pair.image_at, across);
+  const double square = point.rate * point.rate + image.rate * image.rate;
+  if (!(square > 0)) return;
+  const double miss = across.dot(pair.image - pair.point);
+  const double by = miss / (square + kBorderVariance), most = kMostSlide * noise;
+  point.slide(net, std::clamp(by * point.rate, -most, most));
+  image.slide(net, std::clamp(-by * image.rate, -most, most));
+}
+
+SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net, const MirrorPlane& plane,
+                        double noise) {
   const std::string where = "stroke '" + stroke.id + "'";
   if (stroke.points.empty()) throw Error("symmetric pair without points", where, "two points");
   SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
@@ -96,6 +140,11 @@ SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net) {
       borders_of_ends(net, borders_for_pair(net, stroke), pair, where);
   pair.point_at = all_places(net, ends[0]);
   pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
+  if (noise > 0 && !pair.in_plane) {
+    pair.point = evaluate(net, position_form(net, pair.point_at.front()));
+    pair.image = evaluate(net, position_form(net, pair.image_at.front()));
+    slide_ends(pair, net, plane, noise);
+  }
   pair.point = evaluate(net, position_form(net, pair.point_at.front()));
   pair.image = evaluate(net, position_form(net, pair.image_at.front()));
   return pair;
@@ -144,10 +193,11 @@ Eigen::Vector2d across_pairs(const MirrorPlane& plane) {
 }
 
 std::vector<SymmetricPair> read_symmetric_pairs(const View& view, const CurveNet& net,
-                                                const MirrorPlane& plane, double tolerance) {
+                                                const MirrorPlane& plane, double tolerance,
+                                                double noise) {
   std::vector<SymmetricPair> pairs;
   for (const Stroke* stroke : strokes_of(view, StrokeKind::symmetric_pair))
-    pairs.push_back(read_pair(*stroke, net));
+    pairs.push_back(read_pair(*stroke, net, plane, noise));
   if (pairs.empty()) {
     throw Error("no symmetric pair is drawn: depth is not determined", view_name(view.kind),
                 "one pair or more");

@@ -42,12 +42,19 @@ Eigen::Vector2d across_pairs(const MirrorPlane& plane);
 /// The symmetric pairs of a view, on the borders of the panels that they name. A pair whose ends
 /// lie within a quarter of `net.snap` marks a point of the mirror plane.
 ///
+/// Ends that were drawn with noise slide along their borders to where the pair runs along the
+/// normal: by the least s, s' that leave (s^2 + s'^2) + 10 miss^2 least, since a faired border is
+/// sure to about a tenth of the variance of a single point; by three deviations at most, and not
+/// at ends of borders or junctions.
+///
 /// @param tolerance  of the direction of a pair, and of two partners of one point (share of the
 ///                   drawing's diagonal)
+/// @param noise      standard deviation of a drawn coordinate (m)
 /// @throws Error     when there is none; when no border has the panels that a pair names; when an
 ///                   end lies on no border; when a pair runs across the
 ///                   plane's normal, or one point has two partners (names them and the residual)
 std::vector<SymmetricPair> read_symmetric_pairs(const View& view, const CurveNet& net,
-                                                const MirrorPlane& plane, double tolerance);
+                                                const MirrorPlane& plane, double tolerance,
+                                                double noise = 0);
 
 }  // namespace geoprior::sketch
