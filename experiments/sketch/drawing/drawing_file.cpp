@@ -11,11 +11,11 @@
 #include "core/geometry/planar.h"
 #include "core/limits.h"
 #include "experiments/sketch/drawing/drawn_stroke.h"
-#include "experiments/sketch/drawing/hand_drawn.h"
 #include "experiments/sketch/drawing/silhouette_loops.h"
 #include "experiments/sketch/drawing/stroke_kinds.h"
 #include "experiments/sketch/drawing/view_layers.h"
 #include "experiments/sketch/drawing/view_picture.h"
+#include "experiments/sketch/hand/hand_drawn.h"
 #include "testbed/formats/svg/document.h"
 
 namespace geoprior::sketch {

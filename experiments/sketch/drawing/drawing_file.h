@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/options.h"
-#include "experiments/sketch/drawing/hand_drawn.h"
+#include "experiments/sketch/hand/hand_drawn.h"
+#include "experiments/sketch/hand/tremor.h"
 #include "models/sketch/drawing/drawing.h"
-#include "models/sketch/drawing/tremor.h"
 
 namespace geoprior::sketch {
 

@@ -1,6 +1,6 @@
 // Strokes without the tremor of the hand that drew them. What was meant is known: silhouettes of
 // the drawings of the repository, drawn anew by a hand that trembles (tremor.h).
-#include "models/sketch/drawing/fair_stroke.h"
+#include "experiments/sketch/hand/fair_stroke.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 
 #include "core/geometry/planar.h"
 #include "experiments/sketch/drawing/drawing_file.h"
+#include "experiments/sketch/hand/tremor.h"
 #include "models/sketch/drawing/polyline.h"
-#include "models/sketch/drawing/tremor.h"
 #include "tests/support/long_tests.h"
 
 namespace geoprior::sketch {

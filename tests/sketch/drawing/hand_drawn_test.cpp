@@ -1,6 +1,6 @@
 // Drawings by hand, which are put right and said to be; and drawings that are broken, each of which
 // ends in one error or one warning that names the view and the stroke.
-#include "experiments/sketch/drawing/hand_drawn.h"
+#include "experiments/sketch/hand/hand_drawn.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "experiments/sketch/drawing/hand_drawn.h"
+#include "experiments/sketch/hand/hand_drawn.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/geometry/planar.h"
 #include "experiments/sketch/drawing/drawn_stroke.h"
-#include "models/sketch/drawing/fair_stroke.h"
-#include "models/sketch/drawing/join_strokes.h"
+#include "experiments/sketch/hand/fair_stroke.h"
+#include "experiments/sketch/hand/join_strokes.h"
 #include "models/sketch/drawing/outline.h"
 #include "models/sketch/drawing/polyline.h"
 

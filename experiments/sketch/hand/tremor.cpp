@@ -1,4 +1,4 @@
-#include "models/sketch/drawing/tremor.h"
+#include "experiments/sketch/hand/tremor.h"
 
 #include <algorithm>
 #include <array>

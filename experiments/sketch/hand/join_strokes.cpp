@@ -1,4 +1,4 @@
-#include "models/sketch/drawing/join_strokes.h"
+#include "experiments/sketch/hand/join_strokes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "models/sketch/drawing/fair_stroke.h"
+#include "experiments/sketch/hand/fair_stroke.h"
 
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/geometry/planar.h"
-#include "models/sketch/drawing/tremor_band.h"
+#include "experiments/sketch/hand/tremor_band.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -1,4 +1,4 @@
-#include "models/sketch/drawing/tremor_band.h"
+#include "experiments/sketch/hand/tremor_band.h"
 
 #include <algorithm>
 #include <array>
