@@ -14,6 +14,7 @@
 #include "models/sketch/ridges/drawn_ridges.h"
 #include "solvers/sketch/pattern/fair_seams.h"
 #include "solvers/sketch/surface/pinned_transfer.h"
+#include "solvers/sketch/surface/silhouette_stops.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -34,57 +35,6 @@ void pin_across(const std::vector<Eigen::Vector2d>& stroke, const OutlinedView& 
   const ViewAxis along = view_axis(view.frame, k);
   pins.set(vertex, along.axis, along.sign * value);
 }
-
-/// Puts vertices that leave the silhouette of their view back onto it and holds them there: at
-/// their place on it, where they have one near, else across it.
-class SilhouetteStops {
- public:
-  SilhouetteStops(const VisualHull& hull, std::size_t view)
-      : hull_(hull.mesh.V),
-        view_(hull.views[view]),
-        places_(hull.places[view]),
-        spacing_(hull.spacing),
-        held_(Eigen::VectorXd::Zero(hull.mesh.V.rows())) {}
-
-  void hold(const Eigen::MatrixX3d& X, CoordinatePins& pins) {
-    constexpr double kOutside = 1e-6;  // edges
-    for (int v = 0; v < X.rows(); ++v) {
-      const Eigen::Vector2d q = view_.project(X.row(v).transpose());
-      const Outline::Nearest at = view_.outline.nearest(q);
-      const bool at_its_place = has_place_near(v, at.arc_length);
-      if (at.distance > kOutside * spacing_ && at_its_place) held_[v] = 1;
-      if (held_[v] == 0 && (at_its_place || at.distance < -kOutside * spacing_)) continue;
-      const int k = std::abs(at.normal.x()) >= std::abs(at.normal.y()) ? 0 : 1;
-      if (held_[v] == 1) {
-        const Eigen::Vector2d place = view_.project(hull_.row(v).transpose());
-        set(v, k, place[k], pins);
-        set(v, 1 - k, place[1 - k], pins);
-      } else {
-        const double slope = at.normal[1 - k] / at.normal[k];
-        set(v, k, at.point[k] - slope * (q[1 - k] - at.point[1 - k]), pins);
-      }
-    }
-  }
-
-  void save(StateWriter& out) const { out.matrix(held_); }
-  void load(StateReader& in) { in.matrix(held_); }
-
- private:
-  [[nodiscard]] bool has_place_near(int vertex, double arc_length) const {
-    return places_[vertex] && std::abs(std::remainder(places_[vertex]->arc_length - arc_length,
-                                                      view_.outline.length())) < spacing_;
-  }
-  void set(int vertex, int k, double value, CoordinatePins& pins) const {
-    const ViewAxis axis = view_axis(view_.frame, k);
-    pins.set(vertex, axis.axis, axis.sign * value);
-  }
-
-  const Eigen::MatrixX3d& hull_;
-  const OutlinedView& view_;
-  const std::vector<std::optional<SilhouettePlace>>& places_;
-  double spacing_;        ///< m
-  Eigen::VectorXd held_;  ///< 1: from now on
-};
 
 /// A surface's mesh with vertices of their own on the two sides of every cut.
 struct SeveredMesh {
