@@ -207,9 +207,9 @@ class SeveralViews final : public SketchMethod {
   /// those that protrude; where a round one only touches it, folds beside may go out through it.
   void pin_silhouettes(CoordinatePins& pins) {
     pin_ridges(pins);
-    // What smoothing brought outside comes in by itself.
+    // What smoothing and the first iterations bring outside comes in by itself.
     for (SilhouetteStops& stops : stops_)
-      if (steps_ > 0) stops.hold(X_, pins);
+      if (steps_ > 1) stops.hold(X_, pins);
     for (std::size_t view = 0; view < zippering_.size(); ++view) {
       const ZippedSilhouette zipped = zippering_[view].close(surface_.hull.mesh.V, X_);
       edges_ += static_cast<int>(zipped.edges.size());

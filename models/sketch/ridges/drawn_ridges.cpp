@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -41,6 +43,34 @@ std::set<Edge> edges_within_corners(const TriMesh& mesh, const std::vector<int>&
   return within;
 }
 
+/// Those of the edges of one corner that belong to lines whose ends all lie on corners of other
+/// views.
+std::vector<Edge> whole_lines(const std::vector<Edge>& edges, const std::vector<char>& is_end) {
+  std::map<int, std::vector<int>> neighbours;
+  for (const auto& [a, b] : edges) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  std::map<int, bool> is_whole;  // of each vertex's line
+  for (const auto& [start, unused] : neighbours) {
+    if (is_whole.contains(start)) continue;
+    std::vector<int> line{start};
+    std::set<int> seen{start};
+    bool whole = true;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::vector<int>& next = neighbours.at(line[i]);
+      whole = whole && (next.size() == 2 || is_end[line[i]]);
+      for (const int v : next)
+        if (seen.insert(v).second) line.push_back(v);
+    }
+    for (const int v : line) is_whole[v] = whole;
+  }
+  std::vector<Edge> kept;
+  std::copy_if(edges.begin(), edges.end(), std::back_inserter(kept),
+               [&](const Edge& edge) { return is_whole.at(edge[0]); });
+  return kept;
+}
+
 }  // namespace
 
 std::vector<DrawnRidge> drawn_ridges(const VisualHull& hull) {
@@ -55,16 +85,24 @@ std::vector<DrawnRidge> drawn_ridges(const VisualHull& hull) {
   }
   const EdgeConnectivity edges(hull.mesh.F);
   std::vector<DrawnRidge> ridges;
-  std::vector<std::set<Edge>> within;
-  for (const std::vector<int>& of : corner_of)
-    within.push_back(edges_within_corners(hull.mesh, of));
-  for (const auto& [a, b] : edges.edges()) {
-    const Edge edge{std::min(a, b), std::max(a, b)};
-    for (std::size_t v = 0; v < corner_of.size(); ++v) {
-      const int at = corner_of[v][a];
-      if (at < 0 || at != corner_of[v][b] || within[v].contains(edge)) continue;
-      ridges.push_back({edge, static_cast<int>(v)});
-      break;
+  std::set<Edge> found;
+  for (std::size_t v = 0; v < corner_of.size(); ++v) {
+    const std::set<Edge> within = edges_within_corners(hull.mesh, corner_of[v]);
+    std::map<int, std::vector<Edge>> of_corner;
+    for (const auto& [a, b] : edges.edges()) {
+      const Edge edge{std::min(a, b), std::max(a, b)};
+      if (corner_of[v][a] >= 0 && corner_of[v][a] == corner_of[v][b] && !within.contains(edge))
+        of_corner[corner_of[v][a]].push_back(edge);
+    }
+    std::vector<char> is_end(hull.mesh.vertex_count(), 0);
+    for (std::size_t other = 0; other < corner_of.size(); ++other) {
+      for (int i = 0; i < hull.mesh.vertex_count() && other != v; ++i)
+        if (corner_of[other][i] >= 0) is_end[i] = 1;
+    }
+    for (const auto& [corner, of] : of_corner) {
+      for (const Edge& edge : whole_lines(of, is_end)) {
+        if (found.insert(edge).second) ridges.push_back({edge, static_cast<int>(v)});
+      }
     }
   }
   std::sort(ridges.begin(), ridges.end(),

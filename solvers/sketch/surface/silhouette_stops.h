@@ -15,10 +15,11 @@ namespace geoprior::sketch {
 ///
 /// Zippering (`Zippering`) chooses among the edges of the hull that lie on a silhouette. Of a flat
 /// side that is all of it, so that folds which protrude are among them. A round one only touches
-/// its silhouette along a line, and folds beside that go out through it. Such a vertex is put onto
-/// the nearest point of the silhouette, free to slide along it, as long as it would be outside. One
-/// that the hull has on the silhouette near there, as the vertices of a hem, which slide past its
-/// corner, is put to where the hull has it, and is held there from then on.
+/// its silhouette along a line, and folds beside that go out through it. A vertex that is outside
+/// by more than 0.15 edges, which is more than chords make, is put onto the nearest point of the
+/// silhouette, free to slide along it, until it comes inside by itself. One that the hull has on
+/// the silhouette near there, as the vertices of a hem, which slide past its corner, is put to
+/// where the hull has it, and is held there from then on.
 class SilhouetteStops {
  public:
   /// @param hull  must live as long as this
