@@ -209,7 +209,7 @@ class SeveralViews final : public SketchMethod {
     pin_ridges(pins);
     // What smoothing and the first iterations bring outside comes in by itself.
     for (SilhouetteStops& stops : stops_)
-      if (steps_ > 1) stops.hold(X_, pins);
+      if (steps_ > 1 && options_.silhouette == SilhouetteChoice::protruding) stops.hold(X_, pins);
     for (std::size_t view = 0; view < zippering_.size(); ++view) {
       const ZippedSilhouette zipped = zippering_[view].close(surface_.hull.mesh.V, X_);
       edges_ += static_cast<int>(zipped.edges.size());

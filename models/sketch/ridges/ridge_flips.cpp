@@ -14,7 +14,7 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr double kThinnest = 0.3;  ///< height of a triangle that is made, over its longest edge
-constexpr double kNeedle = 0.02;   ///< the same of one that is flipped away whatever it turns by
+constexpr double kNeedle = 0.001;  ///< the same of one that is flipped away whatever it turns by
 
 /// One pass over the edges. What a flip touches is left alone until the next pass, since the
 /// connectivity is that of its beginning.
@@ -81,10 +81,14 @@ class FlipPass {
     const double longest = std::max({(at(c) - at(d)).squaredNorm(), (at(b) - at(c)).squaredNorm(),
                                      (at(c) - at(a)).squaredNorm(), (at(a) - at(d)).squaredNorm(),
                                      (at(d) - at(b)).squaredNorm()});
-    const double thinnest = std::min(n.norm(), m.norm());
     const double thinnest_after = std::min(by_a.norm(), by_b.norm());
-    const bool is_needle = thinnest < kNeedle * (at(a) - at(b)).squaredNorm();
-    if (is_needle && thinnest_after > 2 * thinnest) return apply(*found);
+    const auto is_needle_below = [&](int apex, const Eigen::Vector3d& normal) {
+      const double length = (at(a) - at(b)).norm();
+      return normal.norm() < kNeedle * length * length && (at(apex) - at(a)).norm() < length &&
+             (at(apex) - at(b)).norm() < length && thinnest_after > 2 * normal.norm();
+    };
+    if (by_a.dot(by_b) > 0 && (is_needle_below(c, n) || is_needle_below(d, m)))
+      return apply(*found);
     if (thinnest_after < kThinnest * longest) return false;
     const double before = turning(a, b, n, m) + turning_to(b, c, n, around[0]) +
                           turning_to(c, a, n, around[1]) + turning_to(a, d, m, around[2]) +
