@@ -13,7 +13,6 @@
 #include "experiments/sketch/pattern/piece_verdict.h"
 #include "experiments/sketch/pattern/sheet_layout.h"
 #include "experiments/sketch/pattern/strain_sheet.h"
-#include "models/sketch/pattern/piece_border.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -87,7 +86,7 @@ std::vector<FabricationFile> judged_fabrication_files(const Pattern& pattern,
   for (int k = 0; k < std::ssize(verdicts); ++k) {
     lines += verdict_line(pattern, k, verdicts[k]) + "\n";
     if (verdicts[k].refused.empty()) continue;
-    refused += piece_label(pattern, k) + ": " + verdicts[k].refused + "\n";
+    refused += counted_piece(pattern, k) + ": " + verdicts[k].refused + "\n";
     ++refusals;
   }
   if (refusals < verdicts.size()) {

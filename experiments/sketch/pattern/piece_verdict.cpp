@@ -167,10 +167,13 @@ std::string short_verdict(const PieceVerdict& verdict) {
          " of the area within " + percent(kTakenStrain, 0);
 }
 
+std::string counted_piece(const Pattern& pattern, int piece) {
+  return "piece " + std::to_string(piece + 1) + " of " + std::to_string(pattern.pieces.size()) +
+         " '" + pattern.pieces[piece].name + "'";
+}
+
 std::string verdict_line(const Pattern& pattern, int piece, const PieceVerdict& verdict) {
-  std::string line = "piece " + std::to_string(piece + 1) + " of " +
-                     std::to_string(pattern.pieces.size()) + " '" + pattern.pieces[piece].name +
-                     "': ";
+  std::string line = counted_piece(pattern, piece) + ": ";
   if (!verdict.refused.empty()) line += "REFUSED, " + verdict.refused + "; ";
   line += short_verdict(verdict) + "; worst " + percent(verdict.worst, 1) + " near " +
           verdict.nearest + ", in the pattern at x " + whole_millimetres(verdict.worst_flat.x()) +

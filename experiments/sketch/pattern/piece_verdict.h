@@ -62,6 +62,9 @@ AddedSeam added_seam(const PatternPiece& piece, const Eigen::MatrixX3d& surface)
 /// "strain p95 3.2 %, 91 % of the area within 2 %".
 std::string short_verdict(const PieceVerdict& verdict);
 
+/// "piece 1 of 2 'wall'": counted as people do, where errors count from zero (`piece_label`).
+std::string counted_piece(const Pattern& pattern, int piece);
+
 /// The verdict as one line, with the worst place, why it is refused and what would help.
 std::string verdict_line(const Pattern& pattern, int piece, const PieceVerdict& verdict);
 

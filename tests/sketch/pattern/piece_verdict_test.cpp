@@ -99,6 +99,8 @@ TEST(JudgedFabrication, KeepsARefusedPieceOutOfTheCutFilesUnlessForced) {
   EXPECT_FALSE(refused.contains("pattern.svg"));
   EXPECT_FALSE(refused.contains("pattern.dxf"));
   EXPECT_THAT(refused.at("pattern-refused.txt"), HasSubstr("smaller than its surface"));
+  EXPECT_THAT(refused.at("pattern-refused.txt"), HasSubstr("piece 1 of 1 'flag': "))
+      << "counted as in the verdict";
   EXPECT_THAT(refused.at("pattern-strain.svg"), HasSubstr("REFUSED"));
   FabricationOptions force;
   force.force = true;
