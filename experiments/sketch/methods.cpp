@@ -166,14 +166,13 @@ std::vector<MethodEntry> methods() {
 }
 
 std::vector<DiagnosticEntry> diagnostics() {
-  constexpr Tolerance kWork{1, 0.1};
   DiagnosticTable table;
   table.measured("silhouette_gaps",
                  {"gaps", "1", "stretches of silhouettes that no edge of the surface can cover"});
   table.measured("silhouette_gaps", {"gap_length", "m", "their length in all"});
   table.unmeasured(
       "what a solver minimises, and its work: the surface does not say how it was found",
-      {{"silhouette_edges", "1", "edges that carry the silhouettes of all views", true, kWork},
+      {{"silhouette_edges", "1", "edges that carry the silhouettes of all views"},
        {"residual_accuracy", "m", "root mean square of the rows of the term, as all of these"},
        {"residual_variation", "m", "of even variation of depth along curves"},
        {"residual_pairs", "m", "of drawn symmetric pairs"},

@@ -235,7 +235,8 @@ class SketchFrames final : public FrameModel {
     for (const SeamEdge& e : seam_edges(prepared_.surface))
       (seams[e.seam].view < 0 ? slide : stay).push_back(e);
     if (!suggester_.fair || slide.empty()) return method_->positions();
-    return suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide, stay);
+    return suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide, stay,
+                           input_.pattern);
   }
 
   /// Cuts the first suggestions; the method begins anew on what they leave.

@@ -81,7 +81,7 @@ struct SeamSuggester {
   /// Makes suggested seams fair on the surface that a method ends with: its points, given edges
   /// that may slide and edges that stay. The last frame and the pattern have them.
   std::function<Eigen::MatrixX3d(const TriMesh&, std::span<const SeamEdge>,
-                                 std::span<const SeamEdge>)>
+                                 std::span<const SeamEdge>, const PatternOptions&)>
       fair = {};
   /// Files that are made of the suggestions; none when empty.
   std::function<std::vector<Artifact>(const std::vector<SuggestedSeam>&)> files = {};

@@ -12,7 +12,7 @@
 #include "core/connectivity.h"
 #include "models/sketch/drawing/polyline.h"
 #include "models/sketch/ridges/drawn_ridges.h"
-#include "solvers/sketch/pattern/fair_seams.h"
+#include "solvers/sketch/pattern/slide_seams.h"
 #include "solvers/sketch/surface/pinned_transfer.h"
 #include "solvers/sketch/surface/silhouette_stops.h"
 
@@ -306,7 +306,14 @@ std::unique_ptr<Process> make_several_views_process(
     };
     suggester.apply = options.suggest->apply;
     suggester.iterations = options.suggest->iterations;
-    if (options.suggest->find.fair) suggester.fair = fair_seams;
+    if (options.suggest->find.fair) {
+      suggester.fair =
+          [limits = SlideLimits{options.suggest->find.tolerance, options.suggest->find.share}](
+              const TriMesh& surface, std::span<const SeamEdge> slide,
+              std::span<const SeamEdge> stay, const PatternOptions& pattern) {
+            return slide_seams(surface, slide, stay, limits, pattern);
+          };
+    }
     suggester.files = std::move(suggestion_files);
   }
   return make_sketch_process(

@@ -202,6 +202,9 @@ void describe(OptionVisitor& v, PatternOptions& options) {
        .unit = "deg",
        .min = 0,
        .max = 180});
+  v.value(
+      "most_pieces", options.most_pieces,
+      {.doc = "most pieces that suggested seams may make; 0: any number", .min = 0, .max = 1000});
 }
 
 bool can_be_laid_flat(const CutPiece& piece, double hole_tolerance) {

@@ -32,6 +32,7 @@ struct PatternOptions {
   double seam_mismatch = 0.004;
   /// A border that turns by -2 pi within this is a hole in something flat and stays (deg).
   double hole_tolerance_deg = 10;
+  int most_pieces = 0;  ///< that suggested seams may make; 0: any number
 };
 void describe(OptionVisitor& v, PatternOptions& options);
 

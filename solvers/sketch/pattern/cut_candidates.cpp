@@ -265,12 +265,14 @@ std::vector<SurfacePath> CandidateFinder::star(int from, int start, int count) c
   return paths;
 }
 
-/// A cut that parts the piece in two is made fair first.
+/// A cut that parts the piece in two is made fair as well; what follows a sharp edge is better as
+/// it was found.
 void CandidateFinder::add(std::vector<SurfacePath> paths) {
   if (paths.empty()) return;
   std::vector<SurfacePath> fair;
   if (options_.fair) fair = faired_cut(mesh_, paths, kFairCut * edge_);
-  found_.push_back(fair.empty() ? std::move(paths) : std::move(fair));
+  if (!fair.empty()) found_.push_back(std::move(fair));
+  found_.push_back(std::move(paths));
 }
 
 /// Around every part of constant slope, of several divisions: all its borders together, and the
@@ -287,7 +289,8 @@ void CandidateFinder::add_parts() {
         }
       }
       const Eigen::VectorXd mean = value.cwiseQuotient(count.cwiseMax(1.0));
-      add_level(options_.fair ? smoothed_over(mesh_, mean, kFairCut * edge_) : mean);
+      if (options_.fair) add_level(smoothed_over(mesh_, mean, kFairCut * edge_));
+      add_level(mean);
     }
   }
 }

@@ -4,18 +4,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/angles.h"
 #include "core/connectivity.h"
+#include "core/error.h"
+#include "core/parallel.h"
 #include "models/sketch/flatten/flat_stretch.h"
 #include "models/sketch/flatten/flatten.h"
 #include "models/sketch/surface/shortest_cut.h"
 
 namespace geoprior::sketch {
 namespace {
+
+constexpr int kTrialIterations = 60;
+constexpr double kTrialTolerance = 1e-6;
 
 FlatMeasure measured(const TriMesh& part, const TrialOptions& options) {
   const Flattening flat = flatten(part, options.pattern.flatten);
@@ -51,6 +58,15 @@ std::vector<SurfacePath> opening_of(const CutPiece& part, const TrialOptions& op
 }
 
 }  // namespace
+
+TrialOptions trial_options(const PatternOptions& pattern, double tolerance) {
+  TrialOptions options;
+  options.pattern = pattern;
+  options.tolerance = tolerance;
+  options.pattern.flatten.iterations = std::min(pattern.flatten.iterations, kTrialIterations);
+  options.pattern.flatten.tolerance = std::max(pattern.flatten.tolerance, kTrialTolerance);
+  return options;
+}
 
 CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh) {
   const Eigen::MatrixX3d N = vertex_normals(mesh);
@@ -125,6 +141,7 @@ std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePat
   for (const SeamEdge& e : panel.inner) next_seam = std::max(next_seam, e.seam + 1);
   if (!paths.empty() && !surface.cut(paths, next_seam)) return {};
   trial.parts = static_cast<int>(cut_surface(surface.mesh, surface.seams).size());
+  if (trial.parts > options.most_parts) return {};
   const std::optional<Openings> openings = open_rings(surface, next_seam + 1, options);
   if (!openings) return {};
   trial.opening_length = openings->lines.length;
@@ -134,6 +151,30 @@ std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePat
     trial.least_part = std::min(trial.least_part, triangle_areas(part.mesh.V, part.mesh.F).sum());
   }
   return trial;
+}
+
+std::vector<CutTrial> measured_panels(const std::vector<Panel>& panels,
+                                      const TrialOptions& options) {
+  std::vector<CutTrial> measures(panels.size());
+  std::vector<std::exception_ptr> errors(panels.size());
+  parallel_blocks(panels.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      try {
+        std::optional<CutTrial> trial = try_cut(panels[p], {}, options);
+        if (!trial) {
+          throw Error("cannot be cut open",
+                      "a piece of " + std::to_string(panels[p].piece.mesh.F.rows()) + " triangles");
+        }
+        measures[p] = std::move(*trial);
+      } catch (...) {
+        errors[p] = std::current_exception();
+      }
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return measures;
 }
 
 }  // namespace geoprior::sketch

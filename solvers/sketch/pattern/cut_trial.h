@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -28,7 +29,11 @@ struct TrialOptions {
   PatternOptions pattern;
   double tolerance = 0.02;  ///< of stretch
   std::optional<MirrorAxis> mirror;
+  int most_parts = std::numeric_limits<int>::max();
 };
+
+/// Of patterns that are tried only: fewer iterations than those of the one that is made in the end.
+TrialOptions trial_options(const PatternOptions& pattern, double tolerance);
 
 /// Cuts as they lie on the surface (`CutLines`).
 CutLines lines_of(const std::vector<SurfacePath>& paths, const TriMesh& mesh);
@@ -65,8 +70,13 @@ std::vector<Panel> panels_of(const SeamedSurface& surface);
 
 /// Cuts a panel, opens what cannot be laid flat then, and lays its parts flat.
 /// @param paths  none: the panel as it is
-/// @return       nothing when the mesh cannot be split along the paths
+/// @return       nothing when the mesh cannot be split along the paths, or has too many parts then
 std::optional<CutTrial> try_cut(const Panel& panel, const std::vector<SurfacePath>& paths,
                                 const TrialOptions& options);
+
+/// What each of the panels is laid flat as it is.
+/// @throws Error  for the first that cannot be cut open
+std::vector<CutTrial> measured_panels(const std::vector<Panel>& panels,
+                                      const TrialOptions& options);
 
 }  // namespace geoprior::sketch

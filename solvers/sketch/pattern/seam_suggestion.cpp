@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "core/connectivity.h"
@@ -23,9 +24,6 @@
 namespace geoprior::sketch {
 namespace {
 
-/// Of trials; the pattern that is made in the end has its own options.
-constexpr int kTrialIterations = 60;
-constexpr double kTrialTolerance = 1e-6;
 /// Length of all cuts of a suggestion: shorter ones are not worth sewing, longer ones are not of
 /// anything that is sewn (m). Ours.
 constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
@@ -61,17 +59,27 @@ void keep_apart(std::vector<Scored>& cuts) {
   cuts = std::move(apart);
 }
 
+/// The bytes of what a trial depends on: plans have most of their panels in common.
+std::string key_of(const Panel& panel) {
+  std::string key;
+  const auto append = [&key](const auto* data, Eigen::Index count) {
+    key.append(reinterpret_cast<const char*>(data),
+               sizeof(*data) * static_cast<std::size_t>(count));
+  };
+  append(panel.piece.mesh.V.data(), panel.piece.mesh.V.size());
+  append(panel.piece.mesh.F.data(), panel.piece.mesh.F.size());
+  for (const SeamEdge& e : panel.inner) append(e.edge.data(), 2);
+  return key;
+}
+
 class SuggestionSearch {
  public:
   SuggestionSearch(const TriMesh& surface, std::span<const SeamEdge> seams,
                    const SeamSuggestionOptions& options, const PatternOptions& pattern)
-      : options_(options) {
+      : options_(options), most_pieces_(pattern.most_pieces) {
     first_.work = {surface, {seams.begin(), seams.end()}};
     for (const SeamEdge& e : seams) first_.next_seam = std::max(first_.next_seam, e.seam + 1);
-    trial_.pattern = pattern;
-    trial_.pattern.flatten.iterations = std::min(pattern.flatten.iterations, kTrialIterations);
-    trial_.pattern.flatten.tolerance = std::max(pattern.flatten.tolerance, kTrialTolerance);
-    trial_.tolerance = options.tolerance;
+    trial_ = trial_options(pattern, options.tolerance);
     if (options.symmetric) trial_.mirror = mirror_axis(surface);
     whole_ = triangle_areas(surface.V, surface.F).sum();
     diagonal_ = bounding_box_diagonal(surface.V);
@@ -89,21 +97,24 @@ class SuggestionSearch {
     double score = 0;
   };
 
-  void measure(Plan& plan) const;
+  void measure(Plan& plan);
   [[nodiscard]] bool is_enough(const Plan& plan) const {
     return !(plan.whole.within < options_.share * plan.whole.area);
   }
-  [[nodiscard]] std::vector<Plan> continued(const Plan& plan) const;
-  [[nodiscard]] std::vector<Scored> best_cuts(const Panel& piece, const CutTrial& before) const;
+  [[nodiscard]] std::vector<Plan> continued(const Plan& plan);
+  const std::vector<Scored>& cuts_of(const Plan& plan, std::size_t p);
+  [[nodiscard]] std::vector<Scored> best_cuts(const Panel& piece, const CutTrial& before,
+                                              const TrialOptions& options) const;
   [[nodiscard]] std::optional<Scored> score(const Panel& piece,
                                             const std::vector<SurfacePath>& paths,
-                                            const CutTrial& before) const;
+                                            const CutTrial& before,
+                                            const TrialOptions& options) const;
   [[nodiscard]] std::vector<std::vector<SurfacePath>> candidates(const Panel& panel) const;
   [[nodiscard]] std::optional<std::size_t> mirror_image(const std::vector<Panel>& pieces,
                                                         std::size_t piece) const;
   [[nodiscard]] SuggestedSeam suggestion_of(const Plan& plan, std::size_t p,
                                             const CutTrial& best) const;
-  [[nodiscard]] std::optional<Plan> applied(const Plan& plan, SuggestedSeam suggestion) const;
+  [[nodiscard]] std::optional<Plan> applied(const Plan& plan, SuggestedSeam suggestion);
 
   SeamSuggestionOptions options_;
   TrialOptions trial_;
@@ -111,28 +122,26 @@ class SuggestionSearch {
   double whole_ = 0;       ///< area of the surface (m^2)
   double diagonal_ = 0;    ///< m
   double line_width_ = 0;  ///< m
+  int most_pieces_ = 0;
+  std::unordered_map<std::string, CutTrial> measures_;         ///< by `key_of`
+  std::unordered_map<std::string, std::vector<Scored>> cuts_;  ///< by `key_of`
 };
 
 /// Every piece as it is, and the price of all: the logarithm of the error, so that what halves it
 /// is worth as much early and late, with what length and number of pieces cost.
-void SuggestionSearch::measure(Plan& plan) const {
+void SuggestionSearch::measure(Plan& plan) {
   plan.panels = panels_of(plan.work);
-  plan.measures.assign(plan.panels.size(), {});
-  std::vector<std::exception_ptr> errors(plan.panels.size());
-  parallel_blocks(plan.panels.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      try {
-        std::optional<CutTrial> trial = try_cut(plan.panels[p], {}, trial_);
-        if (!trial) throw Error("cannot be cut open", "piece " + std::to_string(p + 1));
-        plan.measures[p] = std::move(*trial);
-      } catch (...) {
-        errors[p] = std::current_exception();
-      }
-    }
-  });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
+  std::vector<std::string> keys;
+  std::vector<Panel> unknown;
+  for (const Panel& panel : plan.panels) {
+    keys.push_back(key_of(panel));
+    if (!measures_.contains(keys.back())) unknown.push_back(panel);
   }
+  std::vector<CutTrial> measured = measured_panels(unknown, trial_);
+  for (std::size_t i = 0; i < unknown.size(); ++i)
+    measures_.emplace(key_of(unknown[i]), std::move(measured[i]));
+  plan.measures.clear();
+  for (const std::string& key : keys) plan.measures.push_back(measures_.at(key));
   plan.whole = {};
   double length = 0;
   for (const CutTrial& m : plan.measures) {
@@ -169,10 +178,11 @@ std::vector<std::vector<SurfacePath>> SuggestionSearch::candidates(const Panel& 
 }
 
 std::optional<SuggestionSearch::Scored> SuggestionSearch::score(
-    const Panel& piece, const std::vector<SurfacePath>& paths, const CutTrial& before) const {
+    const Panel& piece, const std::vector<SurfacePath>& paths, const CutTrial& before,
+    const TrialOptions& options) const {
   std::optional<CutTrial> trial;
   try {
-    trial = try_cut(piece, paths, trial_);
+    trial = try_cut(piece, paths, options);
   } catch (const Error&) {
     return {};  // a part that cannot be laid flat: no suggestion
   }
@@ -187,13 +197,28 @@ std::optional<SuggestionSearch::Scored> SuggestionSearch::score(
   return Scored{std::move(*trial), removed - cost};
 }
 
+/// `best_cuts` that leave no more pieces than are wanted; found once of a piece that several plans
+/// have.
+const std::vector<SuggestionSearch::Scored>& SuggestionSearch::cuts_of(const Plan& plan,
+                                                                       std::size_t p) {
+  TrialOptions options = trial_;
+  if (most_pieces_ > 0) {
+    const int others = static_cast<int>(plan.panels.size()) - 1;
+    options.most_parts = std::max(plan.measures[p].parts, most_pieces_ - others);
+  }
+  const std::string key = key_of(plan.panels[p]) + std::to_string(options.most_parts);
+  const auto known = cuts_.find(key);
+  if (known != cuts_.end()) return known->second;
+  return cuts_.emplace(key, best_cuts(plan.panels[p], plan.measures[p], options)).first->second;
+}
+
 /// Those that ease the piece for what they cost, the best first.
-std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(const Panel& piece,
-                                                                  const CutTrial& before) const {
+std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(
+    const Panel& piece, const CutTrial& before, const TrialOptions& options) const {
   const std::vector<std::vector<SurfacePath>> all = candidates(piece);
   std::vector<std::optional<Scored>> scored(all.size());
   parallel_blocks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) scored[i] = score(piece, all[i], before);
+    for (std::size_t i = begin; i < end; ++i) scored[i] = score(piece, all[i], before, options);
   });
   std::vector<Scored> best;
   for (std::optional<Scored>& candidate : scored) {
@@ -205,7 +230,7 @@ std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(const Panel& p
   if (best.empty() || options_.rule == SuggestionRule::measured) return best;
   const std::vector<SurfacePath> by_lot =
       random_cuts(piece.piece.mesh, best.front().trial.lines.length, options_.seed);
-  std::optional<CutTrial> trial = try_cut(piece, by_lot, trial_);
+  std::optional<CutTrial> trial = try_cut(piece, by_lot, options);
   best.clear();
   if (trial) best.push_back({std::move(*trial), 0});
   return best;
@@ -239,8 +264,8 @@ std::optional<std::size_t> SuggestionSearch::mirror_image(const std::vector<Pane
 }
 
 /// The plan with a further cut, which is in the numbers of the whole surface, unless that leaves a
-/// crumb.
-std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam suggestion) const {
+/// crumb or too many pieces.
+std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam suggestion) {
   const auto least_piece = [](const SeamedSurface& surface) {
     double least = std::numeric_limits<double>::infinity();
     for (const CutPiece& piece : cut_surface(surface.mesh, surface.seams))
@@ -249,6 +274,10 @@ std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam su
   };
   Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, 0};
   if (!further.work.cut(suggestion.cut, plan.next_seam)) return {};
+  if (most_pieces_ > 0 &&
+      std::ssize(cut_surface(further.work.mesh, further.work.seams)) > most_pieces_) {
+    return {};
+  }
   SeamedSurface opened = further.work;
   if (std::optional<Openings> openings = open_rings(opened, further.next_seam, trial_)) {
     suggestion.openings = std::move(openings->cuts);
@@ -286,7 +315,7 @@ SuggestedSeam SuggestionSearch::suggestion_of(const Plan& plan, std::size_t p,
         mirrored_cut(plan.panels[p].piece, plan.panels[*image].piece, best.cut,
                      {options_.crease, trial_.mirror, options_.fair});
     std::optional<Scored> mirrored;
-    if (!cut.empty()) mirrored = score(plan.panels[*image], cut, plan.measures[*image]);
+    if (!cut.empty()) mirrored = score(plan.panels[*image], cut, plan.measures[*image], trial_);
     if (mirrored) take(*image, mirrored->trial);
   }
   take(p, best);
@@ -294,7 +323,7 @@ SuggestedSeam SuggestionSearch::suggestion_of(const Plan& plan, std::size_t p,
 }
 
 /// The plan with one cut more, of the piece that is strained most among those that can be cut.
-std::vector<Plan> SuggestionSearch::continued(const Plan& plan) const {
+std::vector<Plan> SuggestionSearch::continued(const Plan& plan) {
   std::vector<std::size_t> order(plan.panels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -304,7 +333,7 @@ std::vector<Plan> SuggestionSearch::continued(const Plan& plan) const {
   for (const std::size_t p : order) {
     const FlatMeasure& then = plan.measures[p].flat;
     if (!(then.within < then.area)) continue;
-    for (const Scored& best : best_cuts(plan.panels[p], plan.measures[p])) {
+    for (const Scored& best : cuts_of(plan, p)) {
       if (std::ssize(plans) >= kBranches) break;
       std::optional<Plan> further = applied(plan, suggestion_of(plan, p, best.trial));
       if (further) plans.push_back(std::move(*further));

@@ -49,8 +49,8 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 ///
 /// of the whole surface are followed further, until one has the share of the area within the
 /// tolerance. Candidates whose parts overlap themselves in the plane are left out when the piece
-/// did not, and those that leave a piece smaller than `min_part`, all cuts and openings made. The
-/// lines of suggestions are fair (`faired_lines`).
+/// did not, and those that leave a piece smaller than `min_part`, all cuts and openings made, or
+/// more than `PatternOptions::most_pieces`. The lines of suggestions are fair (`faired_lines`).
 ///
 /// It cannot: move a seam that is there, take cuts back, or know what a tailor likes. Work is that
 /// of flattening a piece some thirty times a suggestion and plan.

@@ -19,7 +19,6 @@ enum class WarpEnd { both_end, second_open, first_open };
 
 struct RulingWarpOptions {
   double collinearity = 0.1;
-  double band = 0.15;        ///< of the warping path about the diagonal, when both runs end
   double smoothness = 1e-3;  ///< of the map between the runs, in its refinement (rad^2)
 };
 void describe(OptionVisitor& v, RulingWarpOptions& options);

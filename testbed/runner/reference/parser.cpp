@@ -24,6 +24,15 @@ struct Word {
   bool is_quoted = false;
 };
 
+/// Of "a|b" both; of nothing the case without a name.
+std::vector<std::string> split_cases(const std::string& word) {
+  std::vector<std::string> cases;
+  std::istringstream names(word);
+  for (std::string name; std::getline(names, name, kBetweenCases);) cases.push_back(name);
+  if (cases.empty()) cases.emplace_back();
+  return cases;
+}
+
 /// Reads one line after the other; what is wrong is said with its number.
 class ReferenceParser {
  public:
@@ -267,7 +276,7 @@ class ReferenceParser {
   void read_claim() {
     ++rows_;
     require_words(8,
-                  "claim, the case, the outcome, excepted or -, the null, what is graded, the "
+                  "claim, its cases, the outcome, excepted or -, the null, what is graded, the "
                   "grade, the text");
     BlessedClaim claim;
     claim.outcome = enumerator_of<ClaimOutcome>(words_[2].text, kClaimOutcomes);
@@ -277,9 +286,11 @@ class ReferenceParser {
       claim.graded = enumerator_of<Graded>(words_[5].text, kGradeds);
       claim.least = number_of(words_[6]);
     }
-    const std::string in = name_of(words_[1]), &text = words_[7].text;
-    if (!set_->claims[text].emplace(in, claim).second) {
-      fail("the claim '" + text + "' in case '" + in + "' is there twice");
+    const std::string& text = words_[7].text;
+    for (const std::string& in : split_cases(name_of(words_[1]))) {
+      if (!set_->claims[text].emplace(in, claim).second) {
+        fail("the claim '" + text + "' in case '" + in + "' is there twice");
+      }
     }
   }
 
@@ -307,13 +318,11 @@ class ReferenceParser {
 
   [[nodiscard]] std::vector<std::string> cases_of(const Word& word) const {
     if (!word.is_quoted && word.text == kAllCases) return cases_;
-    std::vector<std::string> cases;
-    std::istringstream names(word.text);
-    for (std::string name; std::getline(names, name, kBetweenCases);) {
+    std::vector<std::string> cases = split_cases(word.text);
+    for (const std::string& name : cases) {
       if (std::find(cases_.begin(), cases_.end(), name) == cases_.end()) {
         fail("there is no case '" + name + "'", "those of the line `cases`");
       }
-      cases.push_back(name);
     }
     return cases;
   }

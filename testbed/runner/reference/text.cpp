@@ -137,14 +137,19 @@ std::string units_text(const Table& table) {
   return text;
 }
 
-std::string cases_word(const Row& row, const Table& table) {
-  if (row.cases.size() == table.cases.size()) return std::string(kAllCases);
+/// "a|b": one word for several cases.
+std::string joined_cases(const std::vector<std::string>& cases) {
   std::string word;
-  for (const std::string& in : row.cases) {
+  for (const std::string& in : cases) {
     if (!word.empty()) word += kBetweenCases;
     word += in;
   }
   return word_of(word);
+}
+
+std::string cases_word(const Row& row, const Table& table) {
+  if (row.cases.size() == table.cases.size()) return std::string(kAllCases);
+  return joined_cases(row.cases);
 }
 
 /// The text, filled up with spaces, one at least.
@@ -216,15 +221,33 @@ std::string outcome_word(ClaimOutcome outcome) {
   return word;
 }
 
+/// A line of a claim: what became of it in those cases in which all of that agrees.
+struct ClaimRow {
+  std::vector<std::string> cases;
+  std::string outcome;
+};
+
+/// Cases with the same outcome once, in the order of the first of each.
+std::vector<ClaimRow> rows_of_claim(const std::map<std::string, BlessedClaim>& cases) {
+  std::vector<ClaimRow> rows;
+  for (const auto& [in, one] : cases) {
+    const bool graded = one.graded != Graded::not_graded;
+    const std::string outcome =
+        outcome_word(one.outcome) + (one.excepted ? " excepted " : " - ") + word_of(one.null) +
+        " " + (graded ? text_of(one.graded) + " " + number_text(one.least) : "- -");
+    const auto known = std::find_if(rows.begin(), rows.end(),
+                                    [&](const ClaimRow& row) { return row.outcome == outcome; });
+    (known == rows.end() ? rows.emplace_back(ClaimRow{{}, outcome}) : *known).cases.push_back(in);
+  }
+  return rows;
+}
+
 std::string claims_text(const BlessedClaims& claims) {
   std::string text;
   for (const auto& [claim, cases] : claims) {
-    for (const auto& [in, one] : cases) {
-      const bool graded = one.graded != Graded::not_graded;
-      text += "claim " + word_of(in) + " " + outcome_word(one.outcome) + " " +
-              (one.excepted ? "excepted" : "-") + " " + word_of(one.null) + " " +
-              (graded ? text_of(one.graded) + " " + number_text(one.least) : "- -") + " " +
-              escaped_text(claim) + "\n";
+    for (const ClaimRow& row : rows_of_claim(cases)) {
+      text +=
+          "claim " + joined_cases(row.cases) + " " + row.outcome + " " + escaped_text(claim) + "\n";
     }
   }
   return text;
@@ -250,7 +273,7 @@ std::string reference_text(const Reference& reference) {
     const Table table = table_of(set.values);
     rows += table.rows.size() + table.lone.size();
     for (const auto& [in, variants] : set.outcomes) rows += variants.size();
-    for (const auto& [claim, cases] : set.claims) rows += cases.size();
+    for (const auto& [claim, cases] : set.claims) rows += rows_of_claim(cases).size();
     text += set_text(size, set, table);
   }
   return text + "\nend " + std::to_string(rows) + "\n";

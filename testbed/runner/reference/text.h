@@ -7,7 +7,7 @@
 
 namespace geoprior {
 
-constexpr std::string_view kReferenceFirstLine = "geoprior reference 4";
+constexpr std::string_view kReferenceFirstLine = "geoprior reference 5";
 /// In the place of a row's cases: all that the set has.
 constexpr std::string_view kAllCases = "*";
 /// Between the cases of a row; no name of a case has it.

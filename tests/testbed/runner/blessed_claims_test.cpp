@@ -43,6 +43,21 @@ TEST(BlessedClaims, EveryChangeIsALine) {
               ElementsAre(HasSubstr("is excepted, when it was blessed it was not")));
 }
 
+TEST(BlessedClaims, OfCasesThatAgreeAreOneLine) {
+  BlessedSet set;
+  set.blessing = {"c1", "first"};
+  const BlessedClaim holds{ClaimOutcome::holds, false, "n", Graded::frames, 0.35};
+  BlessedClaim closer = holds;
+  closer.least = 0.3;
+  set.claims["round"] = {{"n=1", holds}, {"n=2", closer}, {"n=3", holds}};
+  const std::string text = reference_text({{"full", set}});
+  EXPECT_THAT(text, HasSubstr("claim n=1|n=3 holds - n frames 0.35 \"round\"\n"
+                              "claim n=2 holds - n frames 0.3 \"round\"\n\nend 2\n"));
+  const Reference read = parse_reference(text, "r.txt");
+  EXPECT_EQ(reference_text(read), text);
+  EXPECT_EQ(read.at("full").claims.at("round").at("n=3").least, 0.35);
+}
+
 TEST(BlessedClaims, StandInTheReferenceALineEach) {
   BlessedSet set;
   set.blessing = {"c1", "first"};
@@ -59,7 +74,7 @@ TEST(BlessedClaims, StandInTheReferenceALineEach) {
   const auto error = [&](const std::string& line) -> std::string {
     try {
       (void)parse_reference(
-          "geoprior reference 4\n\nset quick\nblessed c \"r\"\n" + line + "\n\nend 1\n", "r.txt");
+          "geoprior reference 5\n\nset quick\nblessed c \"r\"\n" + line + "\n\nend 1\n", "r.txt");
     } catch (const std::exception& e) {
       return e.what();
     }

@@ -136,7 +136,7 @@ class ForeignNames : public ::testing::Test {
  protected:
   void SetUp() override {
     home_.write("precious/work.txt", "years of work");
-    home_.write("results/reference/toy-circle/disc.txt", "geoprior reference 4\n\nend 0\n");
+    home_.write("results/reference/toy-circle/disc.txt", "geoprior reference 5\n\nend 0\n");
     before_ = files();
   }
 

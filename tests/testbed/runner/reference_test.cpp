@@ -62,7 +62,7 @@ TEST(ReferenceText, IsOneLineAMetricWithTheVariantsSideBySide) {
   set.content = ContentHash{"x86-64-v3", kHashA, kHashB};
   set.processor_s = 3.14159;
   EXPECT_EQ(reference_text({{"quick", set}}),
-            "geoprior reference 4\n"
+            "geoprior reference 5\n"
             "\n"
             "set quick\n"
             "blessed c1 \"first\"\n"
@@ -152,7 +152,7 @@ TEST(ReferenceText, AFileCutAnywhereIsRefused) {
 }
 
 TEST(ReferenceText, WhatIsMalformedIsNamedByFileAndLine) {
-  const std::string head = "geoprior reference 4\n";
+  const std::string head = "geoprior reference 5\n";
   const std::string set =
       head + "set full\nblessed c1 \"first\"\nunit m error\ncases a b\nvariants v w\n";
   const std::string row = "  error a 1 2\n";
@@ -209,7 +209,7 @@ TEST(ReferenceText, WhatIsMalformedIsNamedByFileAndLine) {
 }
 
 TEST(ReferenceText, AFewBytesCannotStandForMillionsOfValues) {
-  std::string text = "geoprior reference 4\nset full\nblessed c \"r\"\nunit m e\ncases",
+  std::string text = "geoprior reference 5\nset full\nblessed c \"r\"\nunit m e\ncases",
               row = "  e *";
   for (int i = 0; i < 2000; ++i) text += " c" + std::to_string(i);
   text += "\nvariants";
