@@ -187,6 +187,21 @@ void read_timing(const TomlNode& root, Experiment& experiment) {
   experiment.timing_warm_up = timing.warm_up;
 }
 
+void require_checked(const TomlNode& check, const std::string& key,
+                     const std::vector<std::string>& metrics, const Topic& topic) {
+  for (const std::string& metric : metrics) {
+    const MetricEntry* row = find_metric(topic, metric);
+    if (row == nullptr) {
+      throw Error("unknown metric '" + metric + "'", place_of(check, key),
+                  allowed_names(metric, metric_names(topic)));
+    }
+    if (!row->gated()) {
+      throw Error("metric '" + metric + "' is not checked: " + row->ungated, place_of(check, key),
+                  "rows that are not `ungated`");
+    }
+  }
+}
+
 /// What bifurcates is compared over its seeds: there must be some.
 void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment) {
   const TomlNode* node = root.find("check");
@@ -196,16 +211,11 @@ void read_check(const TomlNode& root, const Topic& topic, Experiment& experiment
   experiment.bifurcates = table.bifurcates;
   experiment.checked_metrics = table.metrics;
   experiment.keeps_outcomes = table.outcomes;
-  for (const std::string& metric : table.metrics) {
-    const MetricEntry* row = find_metric(topic, metric);
-    if (row == nullptr) {
-      throw Error("unknown metric '" + metric + "'", place_of(*node, "metrics"),
-                  allowed_names(metric, metric_names(topic)));
-    }
-    if (!row->gated()) {
-      throw Error("metric '" + metric + "' is not checked: " + row->ungated,
-                  place_of(*node, "metrics"), "rows that are not `ungated`");
-    }
+  require_checked(*node, "metrics", table.metrics, topic);
+  require_checked(*node, "quick_metrics", table.quick_metrics, topic);
+  if (experiment.quick) {
+    experiment.checked_metrics.insert(experiment.checked_metrics.end(), table.quick_metrics.begin(),
+                                      table.quick_metrics.end());
   }
   const bool sweeps_seed =
       std::all_of(experiment.cases.begin(), experiment.cases.end(),

@@ -144,6 +144,7 @@ void describe(OptionVisitor& v, CheckTable& t) {
   v.value(
       "metrics", t.metrics,
       {.doc = "metrics with reference values though neither a claim nor the figure reads them"});
+  v.value("quick_metrics", t.quick_metrics, {.doc = "further ones, of quick runs alone"});
   v.value("outcomes", t.outcomes,
           {.doc = "the reference keeps a hash of what each case and variant came to (metrics, "
                   "events, artifacts): which options did something"});

@@ -102,6 +102,7 @@ struct TimingTable {
 struct CheckTable {
   bool bifurcates = false;
   std::vector<std::string> metrics;
+  std::vector<std::string> quick_metrics;
   bool outcomes = false;
 };
 

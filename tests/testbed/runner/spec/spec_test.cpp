@@ -45,6 +45,13 @@ TEST_F(Spec, CheckNamesMetricsThatHaveReferenceValues) {
   EXPECT_THAT(checked.checked_metrics, ElementsAre("radius_error"));
   EXPECT_EQ(checked.hash, load(toy::disc_experiment()).hash) << "no number of the run changes";
   EXPECT_THAT(load(checked.resolved_toml).checked_metrics, ElementsAre("radius_error"));
+  const std::string quick_only = "[check]\nquick_metrics = [\"radius_error\"]\n";
+  EXPECT_THAT(load(toy::disc_experiment() + quick_only).checked_metrics, ElementsAre());
+  const Experiment quick = load(toy::disc_experiment() + quick_only, sized(true));
+  EXPECT_THAT(quick.checked_metrics, ElementsAre("radius_error"));
+  EXPECT_THAT(load(quick.resolved_toml).checked_metrics, ElementsAre("radius_error"));
+  EXPECT_THAT(error_of(toy::disc_experiment() + "[check]\nquick_metrics = [\"radius\"]\n"),
+              HasSubstr("check.quick_metrics"));
   EXPECT_THAT(error_of(toy::disc_experiment() + "[check]\nmetrics = [\"radius\"]\n"),
               AllOf(HasSubstr("unknown metric 'radius'"), HasSubstr("disc.toml"),
                     HasSubstr("allowed: radius_error")));
