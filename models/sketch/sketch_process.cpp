@@ -189,7 +189,7 @@ class SketchFrames final : public FrameModel {
 
   void record(int number, FrameSink& sink, RunContext& context) override {
     const bool last = number + 1 == frame_count();
-    const Eigen::MatrixX3d X = last ? faired() : method_->positions();
+    const Eigen::MatrixX3d X = last ? fair_suggested() : method_->positions();
     Frame frame = sketch_frame(prepared_, X, number);
     if (last && suggester_.suggest) {
       if (suggester_.apply == 0) suggest(context);
@@ -228,15 +228,17 @@ class SketchFrames final : public FrameModel {
                                       seam_edges(prepared_.surface), input_.pattern);
   }
 
-  /// The surface with suggested seams, which were drawn in no view, made fair.
-  [[nodiscard]] Eigen::MatrixX3d faired() const {
+  /// Makes suggested seams, which were drawn in no view, fair: triangles are those after flips.
+  Eigen::MatrixX3d fair_suggested() {
     const std::vector<StrokePath>& seams = prepared_.surface.seams;
     std::vector<SeamEdge> slide, stay;
     for (const SeamEdge& e : seam_edges(prepared_.surface))
       (seams[e.seam].view < 0 ? slide : stay).push_back(e);
     if (!suggester_.fair || slide.empty()) return method_->positions();
-    return suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide, stay,
-                           input_.pattern);
+    TriMesh fair = suggester_.fair({method_->positions(), prepared_.surface.hull.mesh.F}, slide,
+                                   stay, input_.pattern);
+    prepared_.surface.hull.mesh.F = std::move(fair.F);
+    return std::move(fair.V);
   }
 
   /// Cuts the first suggestions; the method begins anew on what they leave.

@@ -78,10 +78,11 @@ struct SeamSuggester {
       suggest = {};
   int apply = 0;       ///< the first so many are cut, and the method is begun anew from there
   int iterations = 0;  ///< of the method after that
-  /// Makes suggested seams fair on the surface that a method ends with: its points, given edges
-  /// that may slide and edges that stay. The last frame and the pattern have them.
-  std::function<Eigen::MatrixX3d(const TriMesh&, std::span<const SeamEdge>,
-                                 std::span<const SeamEdge>, const PatternOptions&)>
+  /// Makes suggested seams fair on the surface that a method ends with, given edges that may slide
+  /// and edges that stay; edges between seams may be flipped. The last frame and the pattern have
+  /// them.
+  std::function<TriMesh(const TriMesh&, std::span<const SeamEdge>, std::span<const SeamEdge>,
+                        const PatternOptions&)>
       fair = {};
   /// Files that are made of the suggestions; none when empty.
   std::function<std::vector<Artifact>(const std::vector<SuggestedSeam>&)> files = {};

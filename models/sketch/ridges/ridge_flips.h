@@ -12,7 +12,7 @@ namespace geoprior::sketch {
 /// triangles (twice the absolute mean curvature; Dyn, Hormann, Kim and Levin 2001), in passes over
 /// the edges in their order until there is none, at most eight. The mesh stays a manifold, and no
 /// triangle that it makes is thinner than a height of 0.3 of its longest edge. Needles, thinner
-/// than 0.02, lose their longest edge in any case: three vertices of one ridge make one.
+/// than 0.001, lose their longest edge in any case: three vertices of one ridge make one.
 ///
 /// @param mesh  manifold, open or closed; its triangles change
 /// @return      number of flips

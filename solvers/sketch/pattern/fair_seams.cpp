@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/connectivity.h"
+#include "core/geometry/edge_flips.h"
 #include "core/geometry/surface_point.h"
 #include "core/geometry/topology.h"
 #include "core/geometry/triangle_tree.h"
@@ -28,6 +29,9 @@ constexpr int kFollowPasses = 4;      ///< in every step
 constexpr double kMostMove = 0.25;    ///< of a vertex of a seam in a step, in mean edges
 constexpr double kLeastTurned = 0.3;  ///< cosine between a triangle's normal before and after
 constexpr double kLeastArea = 0.1;    ///< of a triangle, over its area before and the mean
+constexpr int kFlipPasses = 3;        ///< in every step
+constexpr double kFlatEdge = 0.94;    ///< cosine between the normals beside an edge that is flipped
+constexpr double kRounder = 1.2;      ///< how much rounder triangles are that a flip makes
 
 bool is_closed(const Eigen::MatrixX3d& line) {
   return line.rows() > 3 && line.row(0) == line.row(line.rows() - 1);
@@ -102,18 +106,23 @@ class SeamFairing {
         normals_(triangle_normals(surface)),
         areas_(triangle_areas(surface.V, surface.F)),
         X_(surface.V),
+        F_(surface.F),
         stays_(surface.vertex_count(), 0) {
+    for (const std::span<const SeamEdge> of : {seams, kept}) {
+      for (const SeamEdge& e : of) seam_edges_.insert(undirected(e.edge[0], e.edge[1]));
+    }
     const std::vector<bool> border = boundary_vertices(surface.F, surface.vertex_count());
     for (int v = 0; v < surface.vertex_count(); ++v) stays_[v] = border[v] ? 1 : 0;
     for (const SeamEdge& e : kept) stays_[e.edge[0]] = stays_[e.edge[1]] = 1;
     chains_ = seam_chains(seams, stays_);
+    mean_area_ = areas_.mean();
     double sum = 0;
     const EdgeConnectivity edges(surface.F);
     for (const Edge& e : edges.edges()) sum += (X_.row(e[0]) - X_.row(e[1])).norm();
     width_ = kFairWidth * sum / std::max(1, edges.edge_count());
   }
 
-  Eigen::MatrixX3d fair() {
+  TriMesh fair() {
     find_near();
     std::vector<Eigen::MatrixX3d> places;
     for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain));
@@ -121,9 +130,10 @@ class SeamFairing {
       before_ = X_;
       for (std::size_t i = 0; i < chains_.size(); ++i) slide(chains_[i], places[i]);
       follow();
+      flip_stretched();
       undo_turned();
     }
-    return std::move(X_);
+    return {std::move(X_), std::move(F_)};
   }
 
  private:
@@ -178,6 +188,11 @@ class SeamFairing {
       near_.insert(near_.end(), next.begin(), next.end());
       front = std::move(next);
     }
+    moves_.assign(stays_.size(), 0);
+    for (const std::vector<int>& chain : chains_) {
+      for (const int v : chain) moves_[v] = 1;
+    }
+    for (const int v : near_) moves_[v] = 1;
   }
 
   /// Vertices near to seams move by the mean of what their neighbours move by; the farther ones and
@@ -198,18 +213,74 @@ class SeamFairing {
     for (const int v : near_) X_.row(v) = on_surface(surface_.V.row(v) + moves.row(v));
   }
 
+  [[nodiscard]] bool is_right(const Eigen::RowVector3d& area_normal,
+                              const Eigen::RowVector3d& should, double least) const {
+    const double length = area_normal.norm();
+    return length / 2 > least && area_normal.dot(should) > kLeastTurned * length * should.norm();
+  }
+
+  /// Whether an edge about the seams, which is no seam and on no sharp edge of the surface, is
+  /// better flipped: a triangle beside it is turned over, or the two become rounder. Those that
+  /// come of it are right before the step and after it, so that the step can be taken back.
+  [[nodiscard]] bool is_flip_wanted(const EdgeDiamond& of) const {
+    const auto& [left, right, a, b, c, d, around] = of;
+    if (!moves_[a] && !moves_[b] && !moves_[c] && !moves_[d]) return false;
+    if (normals_.row(left).dot(normals_.row(right)) < kFlatEdge) return false;
+    if (seam_edges_.contains(undirected(a, b))) return false;
+    const Eigen::RowVector3d should = normals_.row(left) + normals_.row(right);
+    const double least = kLeastArea * std::min((areas_(left) + areas_(right)) / 2, mean_area_);
+    for (const Eigen::MatrixX3d* X : {&before_, &std::as_const(X_)}) {
+      if (!is_right(area_normal(*X, c, d, b), should, least)) return false;
+      if (!is_right(area_normal(*X, d, c, a), should, least)) return false;
+    }
+    const bool is_bad = !is_right(area_normal(X_, a, b, c), normals_.row(left), least) ||
+                        !is_right(area_normal(X_, b, a, d), normals_.row(right), least);
+    return is_bad || std::min(roundness(c, d, b), roundness(d, c, a)) >
+                         kRounder * std::min(roundness(a, b, c), roundness(b, a, d));
+  }
+
+  [[nodiscard]] static Eigen::RowVector3d area_normal(const Eigen::MatrixX3d& X, int a, int b,
+                                                      int c) {
+    const Eigen::RowVector3d u = X.row(b) - X.row(a), v = X.row(c) - X.row(a);
+    return u.cross(v);
+  }
+
+  /// Area over that of the square of the edges; most for an equilateral triangle.
+  [[nodiscard]] double roundness(int a, int b, int c) const {
+    const double edges = (X_.row(a) - X_.row(b)).squaredNorm() +
+                         (X_.row(b) - X_.row(c)).squaredNorm() +
+                         (X_.row(c) - X_.row(a)).squaredNorm();
+    return area_normal(X_, a, b, c).norm() / edges;
+  }
+
+  void flip_stretched() {
+    bool any = false;
+    for (int pass = 0; pass < kFlipPasses; ++pass) {
+      const Eigen::MatrixX3i F = F_;
+      if (flip_edges(F_, [&](const EdgeDiamond& of) { return is_flip_wanted(of); }) == 0) break;
+      any = true;
+      for (Eigen::Index t = 0; t < F.rows(); ++t) {
+        if (F.row(t) == F_.row(t)) continue;
+        const Eigen::RowVector3d n = area_normal(before_, F_(t, 0), F_(t, 1), F_(t, 2));
+        areas_(t) = n.norm() / 2;
+        normals_.row(t) = n.normalized();
+      }
+    }
+    if (any) rings_ = one_rings(F_, surface_.vertex_count());
+  }
+
   /// Takes back the step of every triangle that it turned over or left without area.
   void undo_turned() {
     for (bool changed = true; changed;) {
       changed = false;
-      const TriMesh now{X_, surface_.F};
+      const TriMesh now{X_, F_};
       const Eigen::MatrixX3d normals = triangle_normals(now);
       const Eigen::VectorXd areas = triangle_areas(now.V, now.F);
       for (int t = 0; t < now.triangle_count(); ++t) {
-        const double least = kLeastArea * std::min(areas_(t), areas_.mean());
+        const double least = kLeastArea * std::min(areas_(t), mean_area_);
         if (normals.row(t).dot(normals_.row(t)) > kLeastTurned && areas(t) > least) continue;
         for (int k = 0; k < 3; ++k) {
-          const int v = surface_.F(t, k);
+          const int v = F_(t, k);
           changed = changed || X_.row(v) != before_.row(v);
           X_.row(v) = before_.row(v);
         }
@@ -220,9 +291,13 @@ class SeamFairing {
   const TriMesh& surface_;
   TriangleTree tree_;
   VertexGraph rings_;
-  Eigen::MatrixX3d normals_;  ///< of the triangles as they were
+  Eigen::MatrixX3d normals_;  ///< of the triangles as they were, or when a flip made them
   Eigen::VectorXd areas_;
+  double mean_area_ = 0;
   Eigen::MatrixX3d X_, before_;  ///< before the step that is made
+  Eigen::MatrixX3i F_;
+  std::set<Edge> seam_edges_;
+  std::vector<char> moves_;  ///< vertices of seams, and those about them
   std::vector<char> stays_;
   std::vector<std::vector<int>> chains_;
   std::vector<int> near_;
@@ -282,8 +357,8 @@ CutLines faired_lines(const CutLines& lines, double width) {
   return faired;
 }
 
-Eigen::MatrixX3d fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
-                            std::span<const SeamEdge> kept) {
+TriMesh fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                   std::span<const SeamEdge> kept) {
   return SeamFairing(surface, seams, kept).fair();
 }
 

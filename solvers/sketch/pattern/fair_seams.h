@@ -24,14 +24,15 @@ CutLines faired_lines(const CutLines& lines, double width);
 /// Slides the vertices of seams along a surface towards fair lines on it in small steps; those near
 /// to them move by the mean of what their neighbours move by. The surface keeps its shape to what
 /// its triangles can follow: all vertices lie on it as it was. Ends of seams, borders and places
-/// where seams meet stay, and a step that would turn a triangle over is not made there: a seam
+/// where seams meet stay, edges about them that are neither seams nor sharp are flipped as
+/// triangles are stretched, and a step that would still turn one over is not made there: a seam
 /// keeps a corner where that happens in every step. A seam that slides off a sharp edge of the
 /// surface has triangles that cut the edge off.
 ///
 /// @param seams  edges that may slide
 /// @param kept   further edges whose vertices stay
-/// @return       n x 3, the vertices
-Eigen::MatrixX3d fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
-                            std::span<const SeamEdge> kept);
+/// @return       with the same vertices, as many triangles, and all edges of seams
+TriMesh fair_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                   std::span<const SeamEdge> kept);
 
 }  // namespace geoprior::sketch

@@ -11,9 +11,9 @@
 
 namespace geoprior::sketch {
 
-Eigen::MatrixX3d slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
-                             std::span<const SeamEdge> kept, const SlideLimits& limits,
-                             const PatternOptions& pattern) {
+TriMesh slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                    std::span<const SeamEdge> kept, const SlideLimits& limits,
+                    const PatternOptions& pattern) {
   const TrialOptions trial = trial_options(pattern, limits.tolerance);
   std::vector<SeamEdge> all(kept.begin(), kept.end());
   all.insert(all.end(), seams.begin(), seams.end());
@@ -31,14 +31,14 @@ Eigen::MatrixX3d slide_seams(const TriMesh& surface, std::span<const SeamEdge> s
     std::vector<SeamEdge> stay;
     std::copy_if(all.begin(), all.end(), std::back_inserter(stay),
                  [number = seam](const SeamEdge& e) { return e.seam != number; });
-    const TriMesh tried{fair_seams(made, edges, stay), made.F};
+    TriMesh tried = fair_seams(made, edges, stay);
     const FlatMeasure after = measured(tried);
     const double least = std::min(before.within / before.area, limits.share);
     if (after.within < least * after.area || (before.sound && !after.sound)) continue;
-    made.V = tried.V;
+    made = std::move(tried);
     before = after;
   }
-  return made.V;
+  return made;
 }
 
 }  // namespace geoprior::sketch

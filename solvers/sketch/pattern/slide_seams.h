@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 
 #include "core/mesh.h"
@@ -21,10 +20,10 @@ struct SlideLimits {
 /// cuts it off. Work is that of laying all flat once a seam and once more.
 /// @param seams  edges that may slide
 /// @param kept   further edges that it is cut along, whose vertices stay
-/// @return       n x 3, the vertices
+/// @return       the surface, as `fair_seams` gives it
 /// @throws Error as `cut_surface` and `flatten`
-Eigen::MatrixX3d slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
-                             std::span<const SeamEdge> kept, const SlideLimits& limits,
-                             const PatternOptions& pattern);
+TriMesh slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
+                    std::span<const SeamEdge> kept, const SlideLimits& limits,
+                    const PatternOptions& pattern);
 
 }  // namespace geoprior::sketch

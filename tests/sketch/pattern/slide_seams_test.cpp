@@ -39,8 +39,8 @@ std::vector<SeamEdge> rim(const TriMesh& mesh) {
   return seam;
 }
 
-double moved(const TriMesh& mesh, const Eigen::MatrixX3d& X) {
-  return (X - mesh.V).rowwise().norm().maxCoeff();
+double moved(const TriMesh& mesh, const TriMesh& to) {
+  return (to.V - mesh.V).rowwise().norm().maxCoeff();
 }
 
 TEST(SlideSeams, RoundsTheCornersOfASeamOnSomethingFlat) {
