@@ -25,9 +25,10 @@ constexpr std::array<int, 2> kDarts{1, 2};  ///< from places that are not the hi
 constexpr int kFurtherPlaces = 3;
 constexpr double kLeastFurther = 0.25;  ///< of the height of the first
 constexpr double kPlacesApart = 6;      ///< edges
-constexpr double kMostDensity = 20;     ///< of |defect|, over its mean
-constexpr double kPlateau = 0.98;       ///< of an extreme: what is as high counts as the same place
-constexpr double kLeastExtreme = 0.2;   ///< of the largest scale, below which a place is none
+constexpr double kCrease = 0.3;  ///< how much cheaper closed cuts are along concentrated curvature
+constexpr double kMostDensity = 20;    ///< of |defect|, over its mean
+constexpr double kPlateau = 0.98;      ///< of an extreme: what is as high counts as the same place
+constexpr double kLeastExtreme = 0.2;  ///< of the largest scale, below which a place is none
 
 constexpr double kFairCut = 4;       ///< scale at which cuts are fair (edges)
 constexpr double kShortestLine = 8;  ///< of a cut around a part (edges)
@@ -96,7 +97,7 @@ std::vector<double> curved_distances(const Eigen::VectorXd& distance, const Eige
 }
 
 /// Price of a metre in each triangle, from the defects within two rings of its corners.
-Eigen::VectorXd crease_price(const TriMesh& mesh, double crease) {
+Eigen::VectorXd crease_price(const TriMesh& mesh) {
   Eigen::VectorXd defect = angle_defects(mesh).cwiseAbs();
   Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertex_count());
   const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
@@ -120,7 +121,7 @@ Eigen::VectorXd crease_price(const TriMesh& mesh, double crease) {
     double density = 0;
     for (int k = 0; k < 3; ++k)
       density += defect(mesh.F(t, k)) / (3 * mean * std::max(area(mesh.F(t, k)), 1e-300));
-    price(t) = 1 / (1 + crease * std::min(density, kMostDensity));
+    price(t) = 1 / (1 + kCrease * std::min(density, kMostDensity));
   }
   return price;
 }
@@ -133,7 +134,7 @@ class CandidateFinder {
         options_(options),
         edge_(mean_edge(piece.mesh)),
         scale_(conformal_scale(piece.mesh)),
-        price_(crease_price(piece.mesh, options.crease)),
+        price_(crease_price(piece.mesh)),
         paths_(piece.mesh, Eigen::VectorXd::Ones(piece.mesh.triangle_count())) {}
 
   std::vector<std::vector<SurfacePath>> find() {
@@ -530,7 +531,7 @@ std::vector<SurfacePath> mirrored_cut(const CutPiece& piece, const CutPiece& oth
   if (!image.empty()) return image;
   for (const SurfacePath& path : cut) {
     SurfacePath near = path_near(other.mesh, image_of(path, piece.mesh.V, *options.mirror),
-                                 crease_price(other.mesh, options.crease));
+                                 crease_price(other.mesh));
     if (near.empty()) return {};
     image.push_back(std::move(near));
   }

@@ -24,7 +24,6 @@ struct MirrorAxis {
 std::optional<MirrorAxis> mirror_axis(const TriMesh& surface);
 
 struct CutCandidateOptions {
-  double crease = 0.3;  ///< how much cheaper a cut is where curvature is concentrated; 0: not
   std::optional<MirrorAxis> mirror = {};
   bool fair = true;  ///< false: cuts stay where they were found
 };
@@ -36,7 +35,7 @@ struct CutCandidateOptions {
 /// the nearest border as well. Closed cuts are each the shortest one that parts the two sides of a
 /// ring: between two values of the scale, around a place, and between two distances from the
 /// longest border, where most curvature lies (a crease parallel to a hem). These are weighted:
-/// cheaper along lines of concentrated angle defect, by 1 / (1 + crease d), d the density of
+/// cheaper along lines of concentrated angle defect, by 1 / (1 + 0.3 d), d the density of
 /// |defect| over its mean; paths of stars are straight on the surface.
 ///
 /// Further cuts go around parts of constant slope (`slope_parts`), which can be laid flat by

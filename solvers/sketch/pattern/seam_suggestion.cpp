@@ -76,7 +76,8 @@ class SuggestionSearch {
  public:
   SuggestionSearch(const TriMesh& surface, std::span<const SeamEdge> seams,
                    const SeamSuggestionOptions& options, const PatternOptions& pattern)
-      : options_(options), most_pieces_(pattern.most_pieces) {
+      : options_(options),
+        most_pieces_(options.rule == SuggestionRule::measured ? pattern.most_pieces : 0) {
     first_.work = {surface, {seams.begin(), seams.end()}};
     for (const SeamEdge& e : seams) first_.next_seam = std::max(first_.next_seam, e.seam + 1);
     trial_ = trial_options(pattern, options.tolerance);
@@ -119,10 +120,10 @@ class SuggestionSearch {
   SeamSuggestionOptions options_;
   TrialOptions trial_;
   Plan first_;
-  double whole_ = 0;       ///< area of the surface (m^2)
-  double diagonal_ = 0;    ///< m
-  double line_width_ = 0;  ///< m
-  int most_pieces_ = 0;
+  double whole_ = 0;                                           ///< area of the surface (m^2)
+  double diagonal_ = 0;                                        ///< m
+  double line_width_ = 0;                                      ///< m
+  int most_pieces_ = 0;                                        ///< 0: any number
   std::unordered_map<std::string, CutTrial> measures_;         ///< by `key_of`
   std::unordered_map<std::string, std::vector<Scored>> cuts_;  ///< by `key_of`
 };
@@ -157,7 +158,7 @@ void SuggestionSearch::measure(Plan& plan) {
 /// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
 /// them, a dart may end on them.
 std::vector<std::vector<SurfacePath>> SuggestionSearch::candidates(const Panel& panel) const {
-  const CutCandidateOptions options{options_.crease, trial_.mirror, options_.fair};
+  const CutCandidateOptions options{trial_.mirror, options_.fair};
   std::vector<std::vector<SurfacePath>> found;
   if (!panel.piece.borders.empty()) found = cut_candidates(panel.piece, options);
   // A closed piece is slit first: its scale is known at a border only.
@@ -311,9 +312,8 @@ SuggestedSeam SuggestionSearch::suggestion_of(const Plan& plan, std::size_t p,
   };
   suggestion.is_dart = best.parts == 1;
   if (const std::optional<std::size_t> image = mirror_image(plan.panels, p)) {
-    const std::vector<SurfacePath> cut =
-        mirrored_cut(plan.panels[p].piece, plan.panels[*image].piece, best.cut,
-                     {options_.crease, trial_.mirror, options_.fair});
+    const std::vector<SurfacePath> cut = mirrored_cut(
+        plan.panels[p].piece, plan.panels[*image].piece, best.cut, {trial_.mirror, options_.fair});
     std::optional<Scored> mirrored;
     if (!cut.empty()) mirrored = score(plan.panels[*image], cut, plan.measures[*image], trial_);
     if (mirrored) take(*image, mirrored->trial);
@@ -386,10 +386,6 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& o) {
       {.doc = "sets of suggestions that are followed at once; 1: the best cut, and on from there",
        .min = 1,
        .max = 100});
-  v.value("crease", o.crease,
-          {.doc = "how much cheaper cuts are along lines of concentrated curvature",
-           .min = 0,
-           .max = 100});
   v.value("min_part", o.min_part,
           {.doc = "least area of a piece, over that of the surface, that suggestions may leave",
            .min = 0,

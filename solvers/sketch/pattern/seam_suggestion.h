@@ -23,7 +23,6 @@ struct SeamSuggestionOptions {
   double length_weight = 0.05;  ///< what a length of the root of the area costs, in removed error
   double piece_weight = 0.12;   ///< what a piece more costs, in removed error
   int plans = 3;                ///< followed at once
-  double crease = 0.3;
   double min_part = 0.02;
   bool fair = true;
   bool symmetric = true;

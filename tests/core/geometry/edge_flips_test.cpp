@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "core/connectivity.h"
 
@@ -28,7 +27,7 @@ TEST(EdgeFlips, GiveADiamondItsOtherDiagonal) {
   const EdgeConnectivity before(F);
   EdgeDiamond made{};
   const int flips = flip_edges(F, [&](const EdgeDiamond& of) {
-    if (std::minmax(of.a, of.b) != std::pair(6, 12)) return false;
+    if (std::min(of.a, of.b) != 6 || std::max(of.a, of.b) != 12) return false;
     made = of;
     return true;
   });
