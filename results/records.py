@@ -247,7 +247,8 @@ def read_record(path):
                                            "ratios", "units", "values")}
         return Record(
             experiment_id=data["experiment"], **same,
-            claims=[Claim(**{"left": math.nan, "right": math.nan} | c) for c in data["claims"]],
+            claims=[Claim(**c | {side: present(c.get(side, math.nan)) for side in ("left", "right")})
+                    for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),
                            *(np.array([present(v) for v in s.get(k, [])], float) for k in ("x", "y")), np.array([]),
                            s.get("members", []), s.get("match", ""))

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/edge_flips.h"
+#include "models/sketch/ridges/edge_flips.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/connectivity.h"
-#include "core/geometry/edge_flips.h"
+#include "models/sketch/ridges/edge_flips.h"
 #include "core/geometry/surface_point.h"
 #include "core/geometry/topology.h"
 #include "core/geometry/triangle_tree.h"

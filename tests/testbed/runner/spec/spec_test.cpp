@@ -51,7 +51,7 @@ TEST_F(Spec, CheckNamesMetricsThatHaveReferenceValues) {
   EXPECT_THAT(quick.checked_metrics, ElementsAre("radius_error"));
   EXPECT_THAT(load(quick.resolved_toml).checked_metrics, ElementsAre("radius_error"));
   EXPECT_THAT(error_of(toy::disc_experiment() + "[check]\nquick_metrics = [\"radius\"]\n"),
-              HasSubstr("check.quick_metrics"));
+              HasSubstr("quick_metrics: unknown metric 'radius'"));
   EXPECT_THAT(error_of(toy::disc_experiment() + "[check]\nmetrics = [\"radius\"]\n"),
               AllOf(HasSubstr("unknown metric 'radius'"), HasSubstr("disc.toml"),
                     HasSubstr("allowed: radius_error")));

@@ -1,4 +1,4 @@
-#include "core/geometry/edge_flips.h"
+#include "models/sketch/ridges/edge_flips.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include "core/connectivity.h"
 
-namespace geoprior {
+namespace geoprior::sketch {
 namespace {
 
 class FlipPass {
@@ -69,4 +69,4 @@ int flip_edges(Eigen::MatrixX3i& F, const std::function<bool(const EdgeDiamond&)
   return FlipPass(F).run(is_wanted);
 }
 
-}  // namespace geoprior
+}  // namespace geoprior::sketch

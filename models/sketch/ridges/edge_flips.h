@@ -4,7 +4,7 @@
 #include <array>
 #include <functional>
 
-namespace geoprior {
+namespace geoprior::sketch {
 
 /// Triangles a b c and b a d beside the edge a b, which a flip makes into c d b and d c a.
 struct EdgeDiamond {
@@ -22,4 +22,4 @@ struct EdgeDiamond {
 /// @return           number of flips
 int flip_edges(Eigen::MatrixX3i& F, const std::function<bool(const EdgeDiamond&)>& is_wanted);
 
-}  // namespace geoprior
+}  // namespace geoprior::sketch

@@ -1,4 +1,4 @@
-#include "core/geometry/edge_flips.h"
+#include "models/sketch/ridges/edge_flips.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/connectivity.h"
 
-namespace geoprior {
+namespace geoprior::sketch {
 namespace {
 
 /// n x n squares, each of two triangles.
@@ -59,4 +59,4 @@ TEST(EdgeFlips, AskForNothingAtABorderAndAtCornersOfThree) {
 }
 
 }  // namespace
-}  // namespace geoprior
+}  // namespace geoprior::sketch
