@@ -132,7 +132,7 @@ def cases_of(record, term):
                                   f"{listed(record.cases)}")
         return only
     found = ([c for c in record.cases if fnmatch.fnmatchcase(c, term.case)] if term.reduction
-             else [c for c in record.cases if c == term.case])
+             else [c for c in (*record.cases, *record.values) if c == term.case][:1])
     if not found:
         raise ExpressionError(f"'{term.experiment}' has no case '{term.case}' (there are "
                               f"{listed(record.cases)})")

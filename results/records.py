@@ -100,7 +100,7 @@ def measured(variant, quantity):
 def quoted_values(run, quoted):
     """(values, units) of the quantities that pages quote: `quoted` has (variant, quantity) pairs."""
     values, units = {}, {}
-    for case in run.cases:
+    for case in run.cases + run.claims_cases:
         for variant_name, quantity in sorted(quoted):
             variant = case.variant(variant_name)
             found = measured(variant, quantity) if variant else None

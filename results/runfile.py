@@ -157,6 +157,7 @@ class Run:
     cases: list[Case]
     studies: list[Study]
     claims: list[Claim]
+    claims_cases: list[Case] = field(default_factory=list)  # there for claims, and for numbers that pages quote
     frames_sha256: str = ""  # of frames, events and artifacts only; empty in older runs
     metrics_sha256: str = ""  # of metrics and summaries only; empty in older runs
     schema_version: int = SCHEMA_VERSION
@@ -265,6 +266,7 @@ def read_root(folder, file):
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
         cases=[read_case(n, g) for n, g in by_index(file["cases"])
                if not g.attrs.get("claims_only", 0)],
+        claims_cases=[read_case(n, g) for n, g in by_index(file["cases"]) if g.attrs.get("claims_only", 0)],
         studies=[Study(n, text(g.attrs["kind"]), text(g.attrs["quantity"]),
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
                        g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))

@@ -34,6 +34,8 @@ class SectionBounds {
                 HullSections sections);
 
   [[nodiscard]] bool empty() const { return !top_ && tubes_.empty(); }
+  /// Whether they are the top view's outline at every height.
+  [[nodiscard]] bool from_top() const { return top_.has_value(); }
   /// Raises a function of a hull's grid to what the sections leave of it.
   void bound(GridFunction& f) const;
   /// A point near the outlines of sections, moved onto the outermost of them.

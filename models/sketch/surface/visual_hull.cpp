@@ -162,7 +162,7 @@ class SilhouetteFit {
       nearest.push_back(view.outline.nearest(view.project(x)));
       outermost = std::max(outermost, nearest.back().distance);
     }
-    if (!sections_.empty() && sections_.value(x) > outermost + same_) return false;
+    if (is_on_section(x, outermost)) return false;
     for (std::size_t v = 0; v < views_.size(); ++v) {
       if (nearest[v].distance < outermost - same_) continue;
       const std::vector<double>& corners = corners_[v];
@@ -171,6 +171,15 @@ class SilhouetteFit {
       runs[v].insert(run == corners.size() ? 0 : run);  // the last run goes on past the first point
     }
     return true;
+  }
+
+  /// Whether the hull ends at a section near to `x`, by which is farther out. The widths of sections
+  /// from the top view change with their height: their values are distances at one height.
+  [[nodiscard]] bool is_on_section(const Eigen::Vector3d& x, double outermost) const {
+    if (sections_.empty()) return false;
+    const double value = sections_.value(x);
+    const double slope = sections_.from_top() ? section_gradient(x).norm() : 1;
+    return value / std::max(1.0, slope) > outermost + same_;
   }
 
   /// Arc length of the corner that is nearest along the outline.
@@ -204,14 +213,18 @@ class SilhouetteFit {
 
   /// 0 where no section is near.
   [[nodiscard]] Eigen::Vector3d section_normal(const Eigen::Vector3d& x) const {
+    return section_gradient(x).stableNormalized();
+  }
+
+  [[nodiscard]] Eigen::Vector3d section_gradient(const Eigen::Vector3d& x) const {
     const double step = 1e-4 * spacing_;
     Eigen::Vector3d gradient;
     for (int c = 0; c < 3; ++c) {
       const Eigen::Vector3d d = step * Eigen::Vector3d::Unit(c);
       const double change = sections_.value(x + d) - sections_.value(x - d);
-      gradient[c] = std::isfinite(change) ? change : 0;
+      gradient[c] = std::isfinite(change) ? change / (2 * step) : 0;
     }
-    return gradient.stableNormalized();
+    return gradient;
   }
 
   /// Whether the section through `x` becomes parallel to the view direction nearer than to the next
