@@ -76,8 +76,7 @@ class SuggestionSearch {
  public:
   SuggestionSearch(const TriMesh& surface, std::span<const SeamEdge> seams,
                    const SeamSuggestionOptions& options, const PatternOptions& pattern)
-      : options_(options),
-        most_pieces_(options.rule == SuggestionRule::measured ? pattern.most_pieces : 0) {
+      : options_(options), most_pieces_(pattern.most_pieces) {
     first_.work = {surface, {seams.begin(), seams.end()}};
     for (const SeamEdge& e : seams) first_.next_seam = std::max(first_.next_seam, e.seam + 1);
     trial_ = trial_options(pattern, options.tolerance);

@@ -6,14 +6,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "core/connectivity.h"
 #include "core/geometry/topology.h"
 #include "experiments/sketch/drawing/drawing_file.h"
 #include "experiments/sketch/truth/known_solid.h"
 #include "models/sketch/drawing/align_views.h"
+#include "models/sketch/sketch_process.h"
+#include "models/sketch/surface/cut_surface.h"
 #include "models/sketch/surface/sketch_surface.h"
 #include "tests/sketch/surface/drawn_solids.h"
 
@@ -159,6 +163,25 @@ TEST(SectionReport, OfShippedDrawings) {
   ASSERT_EQ(tunic.tubes.size(), 2U);
   EXPECT_EQ(tunic.tubes[0].axis, 0);
   EXPECT_EQ(tunic.tubes[0].count, 2);
+}
+
+// A brim runs out under the silhouettes of front and side, its cells near to those of both: none of
+// them goes up to the crown, and a seam between the two makes two pieces.
+TEST(TopSections, OfAHatHaveABrimWithoutSpikes) {
+  const std::string file = std::string(GEOPRIOR_SOURCE_DIR) + "/experiments/sketch/hat-2.svg";
+  const Drawing hat = align_views(read_drawing(file, {}).drawing);
+  for (const int triangles : {3000, 6000, 8000}) {
+    const VisualHull hull = visual_hull(hat, {triangles, HullSections::top});
+    const EdgeConnectivity edges(hull.mesh.F);
+    for (const Edge& e : edges.edges()) {
+      const Eigen::RowVector3d a = hull.mesh.V.row(e[0]), b = hull.mesh.V.row(e[1]);
+      const bool is_upright = std::max(a.y(), b.y()) < 0.1 && std::min(a.y(), b.y()) > 0.001;
+      if (!is_upright) continue;
+      EXPECT_LT((a - b).norm(), 4 * hull.spacing) << triangles << ": " << a;
+    }
+    const SketchSurface surface = sketch_surface(hat, hull);
+    EXPECT_EQ(cut_surface(surface.hull.mesh, seam_edges(surface)).size(), 2U) << triangles;
+  }
 }
 
 // The cuff's perimeter by Ramanujan's series is right to 1e-9 here.
