@@ -173,8 +173,8 @@ class SilhouetteFit {
     return true;
   }
 
-  /// Whether the hull ends at a section near to `x`, by which is farther out. The widths of sections
-  /// from the top view change with their height: their values are distances at one height.
+  /// Whether the hull ends at a section near to `x`, by which is farther out. The widths of
+  /// sections from the top view change with their height: their values are distances at one height.
   [[nodiscard]] bool is_on_section(const Eigen::Vector3d& x, double outermost) const {
     if (sections_.empty()) return false;
     const double value = sections_.value(x);
