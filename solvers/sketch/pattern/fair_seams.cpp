@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/connectivity.h"
-#include "models/sketch/ridges/edge_flips.h"
 #include "core/geometry/surface_point.h"
 #include "core/geometry/topology.h"
 #include "core/geometry/triangle_tree.h"
+#include "models/sketch/ridges/edge_flips.h"
 
 namespace geoprior::sketch {
 namespace {
