@@ -41,7 +41,7 @@ def publish(root, run_folders):
     texts = page_texts(root)
     wanted = [quote for page, text in texts.items() for quote in pages.quoted(page, text)]
     for folder in run_folders:
-        run = runfile.read_run(folder)
+        run = runfile.read_run(folder, claims_cases=True)
         quotes = {(variant, quantity) for experiment, variant, quantity in wanted if experiment == run.experiment_id}
         print(records.write_record(root, claimed.standing(records.record_of(run, quotes), root)))
         for path in pictures.publish(run, texts, root):

@@ -255,7 +255,7 @@ def read_claim(row):
                  float(row["right"]), bool(row["holds"]), **texts, **least)
 
 
-def read_root(folder, file):
+def read_root(folder, file, claims_cases=False):
     attrs = file.attrs
     known = {*ROOT_TEXTS, *LATER_ROOT_TEXTS, "schema_version", "quick"}
     run = Run(
@@ -266,7 +266,8 @@ def read_root(folder, file):
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
         cases=[read_case(n, g) for n, g in by_index(file["cases"])
                if not g.attrs.get("claims_only", 0)],
-        claims_cases=[read_case(n, g) for n, g in by_index(file["cases"]) if g.attrs.get("claims_only", 0)],
+        claims_cases=[read_case(n, g) for n, g in by_index(file["cases"])
+                      if claims_cases and g.attrs.get("claims_only", 0)],
         studies=[Study(n, text(g.attrs["kind"]), text(g.attrs["quantity"]),
                        float(g.attrs["value"]), float(g.attrs["low"]), float(g.attrs["high"]),
                        g["x"][()], g["y"][()], g["y_of"][()] if "y_of" in g else np.array([]))
@@ -347,8 +348,9 @@ def require_own(group):
             raise ValueError(f"{name} has its values in another file")
 
 
-def read_run(place, force=False):
-    """Reads a run folder (or its run.h5); with `force` whether or not it is what was recorded.
+def read_run(place, force=False, claims_cases=False):
+    """Reads a run folder (or its run.h5); with `force` whether or not it is what was recorded, with `claims_cases` also
+    the cases that are there for claims only.
     Raises RunFileError with one clear line."""
     path = Path(place)
     path = path / "run.h5" if path.is_dir() else path
@@ -364,7 +366,7 @@ def read_run(place, force=False):
             if not 1 <= version <= SCHEMA_VERSION:
                 raise RunFileError(f"{path}: schema version {version} "
                                    f"(this program reads up to {SCHEMA_VERSION})")
-            run = read_root(path.parent, file)
+            run = read_root(path.parent, file, claims_cases)
             run.force = force
             return run
     except RunFileError:

@@ -96,6 +96,12 @@ std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count)
   return on_boundary;
 }
 
+double mean_edge_length(const Eigen::MatrixX3d& V, const EdgeConnectivity& edges) {
+  double sum = 0;
+  for (const auto& [a, b] : edges.edges()) sum += (V.row(a) - V.row(b)).norm();
+  return edges.edge_count() > 0 ? sum / edges.edge_count() : 0;
+}
+
 void require_closed_manifold(const TriMesh& mesh, const std::string& who,
                              const std::string& where) {
   const EdgeConnectivity connectivity(mesh.F);

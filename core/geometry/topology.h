@@ -36,6 +36,10 @@ std::vector<Edge> non_manifold_edges(const Eigen::MatrixX3i& F);
 /// True for vertices on a boundary edge.
 std::vector<bool> boundary_vertices(const Eigen::MatrixX3i& F, int vertex_count);
 
+/// Mean length of the edges (m); 0 without any.
+/// @param edges  of the triangles whose vertices are the rows of V
+double mean_edge_length(const Eigen::MatrixX3d& V, const EdgeConnectivity& edges);
+
 /// Throws Error naming up to five offending edges unless the mesh is closed, manifold and
 /// consistently oriented. `who` is the method or metric that needs it; `where` names the mesh (a
 /// file).

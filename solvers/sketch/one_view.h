@@ -68,9 +68,8 @@ struct OneViewResult {
 ///
 /// 0. Trembling borders are faired (`faired_borders`). The noise that they had tells within what
 ///    ends meet (three deviations at least), and how little pairs weigh beside dense matches (5e-4
-///    of the diagonal as good as exact). Hidden parts of borders are completed where
-/// only what is visible is drawn
-///    (`complete_borders`).
+///    of the diagonal as good as exact). Hidden parts of borders are completed where only what is
+///    visible is drawn (`complete_borders`).
 /// 1. Borders become curves (`build_curve_net`); the mirror plane comes from its two vectors
 ///    (`mirror_plane.h`), dense symmetric correspondences from the pairs (`dense_matches`), rulings
 ///    from drawn ones by time warping (`sweep_ruled_patches`).

@@ -43,13 +43,6 @@ constexpr double kCopyNoise = 2;
 constexpr double kRimSpan = 200 * kDegree;
 constexpr double kRimBetweenSilhouettes = 130 * kDegree;
 
-/// A point of a border as it is put together.
-struct BorderPoint {
-  Eigen::Vector2d p{0, 0};
-  DrawnPlace place;
-};
-using Stretch = std::vector<BorderPoint>;
-
 /// A border in one or more stretches, in order and sense.
 struct PartialBorder {
   int stroke = -1;  ///< the first that was drawn of it
@@ -60,85 +53,6 @@ struct PartialBorder {
 
   [[nodiscard]] bool whole() const {
     return stretches.size() == 1 && (closed || (!covered[0] && !covered[1]));
-  }
-};
-
-double stretch_length(const Stretch& stretch) {
-  double sum = 0;
-  for (std::size_t i = 1; i < stretch.size(); ++i) sum += (stretch[i].p - stretch[i - 1].p).norm();
-  return sum;
-}
-
-PictureCurve picture_of(const Stretch& stretch, bool closed) {
-  PictureCurve curve{{}, closed};
-  for (const BorderPoint& b : stretch) curve.points.push_back(b.p);
-  return curve;
-}
-
-/// A stretch with its places on a model of the whole border, in the model's sense.
-struct PlacedStretch {
-  double begin = 0, end = 0;
-  bool turned = false;
-  Stretch stretch;
-};
-
-std::vector<PlacedStretch> placed_along(const PictureCurve& model,
-                                        const std::vector<Stretch>& stretches) {
-  const double around = static_cast<double>(model.points.size());
-  const auto ahead = [&](double a, double b) {
-    return b - a - around * std::floor((b - a) / around);
-  };
-  std::vector<PlacedStretch> placed;
-  for (const Stretch& stretch : stretches) {
-    PlacedStretch p{nearest_place(model, stretch.front().p).at,
-                    nearest_place(model, stretch.back().p).at, false, stretch};
-    // The way from begin over the middle to the end tells the sense around a closed model.
-    const double middle = nearest_place(model, stretch[stretch.size() / 2].p).at;
-    p.turned = model.closed ? ahead(p.begin, middle) > ahead(p.begin, p.end) : p.end < p.begin;
-    if (p.turned) std::swap(p.begin, p.end);
-    if (p.turned) std::reverse(p.stretch.begin(), p.stretch.end());
-    if (model.closed) p.end = p.begin + ahead(p.begin, p.end);
-    placed.push_back(std::move(p));
-  }
-  std::stable_sort(
-      placed.begin(), placed.end(),
-      [](const PlacedStretch& a, const PlacedStretch& b) { return a.begin < b.begin; });
-  return placed;
-}
-
-double length_between(const PictureCurve& curve, double a, double b) {
-  double sum = 0;
-  Eigen::Vector2d before = point_at(curve, a);
-  for (double k = std::floor(a) + 1; k < b; k += 1) {
-    const Eigen::Vector2d p = point_at(curve, k);
-    sum += (p - before).norm();
-    before = p;
-  }
-  return sum + (point_at(curve, b) - before).norm();
-}
-
-/// A border as it is put together along a model.
-struct FollowedModel {
-  const PictureCurve& model;
-  Stretch points;
-  double added = 0;  ///< length (m)
-
-  /// Points of the model between two places, moved so that they go on from the given points;
-  /// without a point, with the end of the model.
-  void fill(double a, double b, const std::optional<Eigen::Vector2d>& at_a,
-            const std::optional<Eigen::Vector2d>& at_b) {
-    const Eigen::Vector2d zero(0, 0);
-    const Eigen::Vector2d da = at_a ? Eigen::Vector2d(*at_a - point_at(model, a)) : zero;
-    const Eigen::Vector2d db = at_b ? Eigen::Vector2d(*at_b - point_at(model, b)) : zero;
-    Stretch guess;
-    for (double k = at_a ? std::floor(a) + 1 : a; at_b ? k < b : k <= b + 1e-9; k += 1) {
-      const double t = b > a ? (k - a) / (b - a) : 0;
-      guess.push_back({point_at(model, k) + (1 - t) * da + t * db, {}});
-    }
-    if (at_a && !guess.empty()) added += (guess.front().p - *at_a).norm();
-    if (at_b && !guess.empty()) added += (guess.back().p - *at_b).norm();
-    added += stretch_length(guess);
-    points.insert(points.end(), guess.begin(), guess.end());
   }
 };
 
@@ -186,7 +100,6 @@ class BorderCompletion {
   [[nodiscard]] CopyHints hints_between(int whole, int copy) const;
   [[nodiscard]] std::optional<PictureMirror> mirror_of(const PartialBorder& border) const;
   [[nodiscard]] bool between_own_silhouettes(int border) const;
-  [[nodiscard]] Eigen::Vector2d direction_out(const Stretch& stretch, bool at_back) const;
   [[nodiscard]] double distance_to(const PartialBorder& border, const Eigen::Vector2d& p) const;
 
   const View& view_;
@@ -258,25 +171,6 @@ void BorderCompletion::find_covered_ends() {
   }
 }
 
-/// Direction in which a stretch leaves its end, from a line through its last part.
-Eigen::Vector2d BorderCompletion::direction_out(const Stretch& stretch, bool at_back) const {
-  const auto at = [&](std::size_t k) -> const Eigen::Vector2d& {
-    return stretch[at_back ? stretch.size() - 1 - k : k].p;
-  };
-  std::size_t k = 1;
-  double way = 0;
-  while (k < stretch.size() && way < kEndPart * diagonal_) {
-    way += (at(k) - at(k - 1)).norm();
-    ++k;
-  }
-  // Middles of both halves of the part, so that one trembling point does not decide.
-  Eigen::Vector2d near(0, 0), far(0, 0);
-  const std::size_t half = std::max<std::size_t>(k / 2, 1);
-  for (std::size_t i = 0; i < half; ++i) near += at(i) / static_cast<double>(half);
-  for (std::size_t i = k - half; i < k; ++i) far += at(i) / static_cast<double>(half);
-  return (near - far).normalized();
-}
-
 /// Puts the best two stretches together that may be one border; false: there are none.
 bool BorderCompletion::join_one() {
   struct Join {
@@ -286,7 +180,8 @@ bool BorderCompletion::join_one() {
   } best;
   const auto out = [&](int i, bool back) {
     const PartialBorder& border = borders_[i];
-    return direction_out(back ? border.stretches.back() : border.stretches.front(), back);
+    return direction_out(back ? border.stretches.back() : border.stretches.front(), back,
+                         kEndPart * diagonal_);
   };
   const auto end = [&](int i, bool back) -> const Eigen::Vector2d& {
     return back ? borders_[i].stretches.back().back().p : borders_[i].stretches.front().front().p;
@@ -582,13 +477,14 @@ bool BorderCompletion::mirror_self(int number) {
 
 /// Hermite's cubic between stretches, with the directions in which they end.
 void BorderCompletion::join_by_cubics(PartialBorder& border) {
+  const double part = kEndPart * diagonal_;
   Stretch whole = border.stretches.front();
   for (std::size_t k = 1; k < border.stretches.size(); ++k) {
     const Stretch& next = border.stretches[k];
     const Eigen::Vector2d p = whole.back().p, q = next.front().p;
     const double gap = (q - p).norm();
-    const Eigen::Vector2d u = gap * direction_out(whole, true),
-                          v = -gap * direction_out(next, false);
+    const Eigen::Vector2d u = gap * direction_out(whole, true, part),
+                          v = -gap * direction_out(next, false, part);
     const int count = std::max(1, static_cast<int>(gap / (kGuessSpacing * diagonal_)));
     for (int i = 1; i < count; ++i) {
       const double t = static_cast<double>(i) / count, s = 1 - t;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/sketch/drawing/drawing.h"
+#include "solvers/sketch/drawing/border_stretches.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
 
 namespace geoprior::sketch {
@@ -15,12 +16,6 @@ enum class Completion {
   mirror,    ///< mirror images and smooth continuation
   parallel,  ///< parallel copies, ellipses and smooth continuation
   none,      ///< nothing is guessed: flat and fair panels with an open border are left out
-};
-
-/// Where a point of a completed border was drawn.
-struct DrawnPlace {
-  int stroke = -1;  ///< of the drawing; -1: nowhere, it is guessed
-  double at = 0;    ///< number of its point
 };
 
 /// A stretch of a border that nothing of the drawing shows.

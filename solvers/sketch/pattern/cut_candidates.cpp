@@ -41,12 +41,7 @@ constexpr std::array<std::array<double, 2>, 3> kBands{{{0.05, 0.4}, {0.4, 0.75},
 constexpr int kDistanceBands = 5;
 constexpr double kBandHalfWidth = 2.5;
 
-double mean_edge(const TriMesh& mesh) {
-  double sum = 0;
-  const EdgeConnectivity edges(mesh.F);
-  for (const Edge& e : edges.edges()) sum += (mesh.V.row(e[0]) - mesh.V.row(e[1])).norm();
-  return sum / std::max(1, edges.edge_count());
-}
+double mean_edge(const TriMesh& mesh) { return mean_edge_length(mesh.V, EdgeConnectivity(mesh.F)); }
 
 /// Length of the shortest path of edges from each vertex to a border (m).
 Eigen::VectorXd border_distance(const TriMesh& mesh, const std::vector<int>& border) {

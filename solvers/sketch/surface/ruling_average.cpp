@@ -8,6 +8,7 @@
 
 #include "core/angles.h"
 #include "core/connectivity.h"
+#include "core/geometry/topology.h"
 #include "core/mesh.h"
 #include "core/parallel.h"
 
@@ -15,12 +16,6 @@ namespace geoprior::sketch {
 namespace {
 
 constexpr double kAxisGuard = 30 * kDegree;
-
-double mean_edge_length(const Eigen::MatrixX3d& V, const EdgeConnectivity& edges) {
-  double sum = 0;
-  for (const auto& [a, b] : edges.edges()) sum += (V.row(a) - V.row(b)).norm();
-  return edges.edge_count() > 0 ? sum / edges.edge_count() : 0;
-}
 
 /// Direction of the ruling at a patch of normals: across the mean normal.
 Eigen::Vector3d ruling_of(const Eigen::Matrix3d& moments, const Eigen::Vector3d& mean) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "tests/core/geometry/shapes.h"
@@ -26,6 +27,17 @@ TEST(Topology, ClosedMeshHasNeitherBoundaryNorBadEdges) {
   EXPECT_TRUE(boundary_edges(mesh.F).empty());
   EXPECT_TRUE(non_manifold_edges(mesh.F).empty());
   EXPECT_NO_THROW(require_closed_manifold(mesh, "test", "octahedron"));
+}
+
+TEST(Topology, MeanEdgeLengthCountsEveryEdgeOnce) {
+  TriMesh square;  // of side 1, with a diagonal
+  square.V.resize(4, 3);
+  square.V << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+  square.F.resize(2, 3);
+  square.F << 0, 1, 2, 0, 2, 3;
+  EXPECT_NEAR(mean_edge_length(square.V, EdgeConnectivity(square.F)), (4 + std::sqrt(2)) / 5,
+              1e-15);
+  EXPECT_EQ(mean_edge_length(square.V, EdgeConnectivity(Eigen::MatrixX3i(0, 3))), 0);
 }
 
 TEST(Topology, MissingTriangleLeavesItsThreeEdgesOpen) {
