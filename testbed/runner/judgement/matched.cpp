@@ -20,11 +20,13 @@ std::vector<double> at_cases(const std::vector<double>& values, const std::vecto
 }
 
 Priced at_cases(const Priced& variant, const std::vector<int>& cases) {
-  return {at_cases(variant.cost, cases), at_cases(variant.quality, cases)};
+  Priced chosen{at_cases(variant.cost, cases), at_cases(variant.quality, cases)};
+  if (!variant.kept.empty()) chosen.kept = at_cases(variant.kept, cases);
+  return chosen;
 }
 
 Matched at_cases(const Matched& all, const std::vector<int>& cases) {
-  Matched chosen{at_cases(all.method, cases), {}, {}, all.cost};
+  Matched chosen{at_cases(all.method, cases), {}, {}, all.cost, all.within};
   for (const auto& family : all.families) {
     auto& members = chosen.families.emplace_back();
     for (const Priced& member : family) members.push_back(at_cases(member, cases));
@@ -33,21 +35,28 @@ Matched at_cases(const Matched& all, const std::vector<int>& cases) {
   return chosen;
 }
 
+double kept_of(const Priced& variant) { return variant.kept.empty() ? 0 : mean(variant.kept); }
+
 /// What a family costs at an error.
 double cost_at(double error, const std::vector<Priced>& family, const Matched& all) {
-  double best = std::numeric_limits<double>::infinity(), at_best = 0;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double least_kept = kept_of(all.method) - all.within;
+  double best = kNever, at_best = 0, kept_at_best = 0;
   for (const Priced& member : family) {
     const double e = error_of(member, all.truth), cost = cost_of(member, all.cost);
+    const double kept = kept_of(member);
     if (!(e < best)) continue;
     if (e <= error) {
-      if (!std::isfinite(best) || !(e > 0)) return cost;
-      const double t = std::log(best / error) / std::log(best / e);
-      return at_best * std::pow(cost / at_best, t);
+      const bool between = std::isfinite(best) && e > 0;
+      const double t = between ? std::log(best / error) / std::log(best / e) : 1;
+      if (!((1 - t) * kept_at_best + t * kept >= least_kept)) return kNever;
+      return between ? at_best * std::pow(cost / at_best, t) : cost;
     }
     best = e;
     at_best = cost;
+    kept_at_best = kept;
   }
-  return std::numeric_limits<double>::infinity();
+  return kNever;
 }
 
 }  // namespace

@@ -113,6 +113,9 @@ bool add_priced(const CaseRecord& in, const std::string& name, const StudySpec& 
   }
   priced.cost.push_back(cost);
   priced.quality.push_back(quality);
+  if (study.keep.empty()) return true;
+  const double kept = quantity_of(in, *variant, study.keep, std::nullopt, study.match_reduce).value;
+  priced.kept.push_back(study.keep_direction == Direction::lower_is_better ? -kept : kept);
   return true;
 }
 
@@ -135,6 +138,7 @@ void draw_frames(const CaseRecord& in, const StudySpec& study, Matched& all) {
   const auto draw = [&](const std::string& name, Priced& priced) {
     priced.cost = frame_times(in, name, study);
     priced.quality.assign(priced.cost.size(), priced.quality.front());
+    if (!priced.kept.empty()) priced.kept.assign(priced.cost.size(), priced.kept.front());
   };
   draw(study.variant, all.method);
   for (std::size_t f = 0; f < study.families.size(); ++f) {
@@ -150,6 +154,7 @@ void add_matched(StudyRecord& record, const StudySpec& study,
                  const std::vector<const CaseRecord*>& cases, std::uint64_t seed) {
   Matched all;
   all.cost = study.reduce == Reduction::mean ? Reduction::mean : Reduction::median;
+  all.within = study.keep_within;
   for (const auto& family : study.families) all.families.emplace_back(family.size());
   std::vector<const CaseRecord*> kept;
   for (const CaseRecord* in : cases) {

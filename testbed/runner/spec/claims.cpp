@@ -354,11 +354,22 @@ void require_members(const StudyTable& table, const Topic& topic, const TomlNode
     throw Error(matched ? "is missing" : "has no meaning for this kind", place_of(node, "families"),
                 "[{ variants = […] }, …], from coarse to fine, for kind = \"matched\"");
   }
+  if (table.keep.has_value() != table.keep_within.has_value() || (!matched && table.keep)) {
+    throw Error(matched ? "is missing" : "has no meaning for this kind",
+                place_of(node, table.keep ? "keep_within" : "keep"),
+                "`keep`, a metric, and `keep_within`, a number, for kind = \"matched\"");
+  }
   if (!matched) return;
   require_metric(*table.match, topic, place_of(node, "match"), {});
   for (const FamilyTable& family : table.families) {
     if (!family.variants.empty()) continue;
     throw Error("has no members", place_of(node, "families"), "variants from coarse to fine");
+  }
+  if (!table.keep) return;
+  const MetricEntry* kept = find_metric(topic, *table.keep);
+  if (kept == nullptr || kept->direction == Direction::none) {
+    throw Error("'" + *table.keep + "' has no better and worse", place_of(node, "keep"),
+                "a metric with a direction");
   }
 }
 
@@ -413,6 +424,10 @@ std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
                        table.match_reduce});
     for (const FamilyTable& family : table.families)
       studies.back().families.push_back(family.variants);
+    if (!table.keep) continue;
+    studies.back().keep = *table.keep;
+    studies.back().keep_direction = find_metric(topic, *table.keep)->direction;
+    studies.back().keep_within = *table.keep_within;
   }
   return studies;
 }

@@ -95,6 +95,11 @@ struct StudySpec {
   std::string match = {};  ///< of `matched`: the quality, as `quantity`
   Reduction match_reduce = Reduction::last;
   std::vector<std::vector<std::string>> families = {};  ///< of `matched`: variants, coarse to fine
+  /// Of `matched`: the metric of which rivals may have less than the variant by `keep_within`, or
+  /// empty; reduced as `match`.
+  std::string keep = {};
+  Direction keep_direction = Direction::none;
+  double keep_within = 0;
 };
 
 /// The study that the claim is about; null when it is about a variant.

@@ -123,7 +123,10 @@ void describe(OptionVisitor& v, StudyTable& t) {
   v.value("match", t.match,
           {.doc = "metric in which the rivals of a matched study are to be equal"});
   describe_choice(v, "match_reduce", t.match_reduce, kReductions,
-                  {.doc = "one number of all frames of `match`"});
+                  {.doc = "one number of all frames of `match`, and of `keep`"});
+  v.value("keep", t.keep, {.doc = "metric that the rivals of a matched study may not pay with"});
+  v.value("keep_within", t.keep_within,
+          {.doc = "how much worse rivals may be in it than the variant", .min = 0});
   describe_list(v, "families", t.families,
                 {.doc = "rivals of a matched study, each at several resolutions"});
   v.value("cases", t.cases, {.doc = "names of cases; absent: all that have what is asked"});

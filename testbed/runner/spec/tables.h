@@ -90,6 +90,8 @@ struct StudyTable {
   Reduction reduce = Reduction::median;
   std::optional<std::string> match;
   Reduction match_reduce = Reduction::last;
+  std::optional<std::string> keep;
+  std::optional<double> keep_within;
   std::vector<FamilyTable> families;
   std::vector<std::string> cases;
 };

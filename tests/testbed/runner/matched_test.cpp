@@ -30,6 +30,20 @@ TEST(Matched, ARivalIsItsBestSoFarOrNever) {
   EXPECT_EQ(matched_ratio(matched({{2}, {0}}, {{{{1}, {1}}, {{5}, {0}}}})), 2.5);
 }
 
+// Halfway to the method's error the rival has kept 0.9: it counts where 0.1 less are allowed.
+TEST(Matched, ARivalPaysWithNothingThatIsKept) {
+  const std::vector<Priced> rival{{{1}, {1}, {1}}, {{4}, {0.25}, {0.8}}};
+  Matched all = matched({{1}, {0.5}, {1}}, {rival});
+  all.within = 0.11;
+  EXPECT_NEAR(matched_ratio(all), 2, 1e-12);
+  all.within = 0.09;
+  EXPECT_TRUE(std::isinf(matched_ratio(all)));
+  all.families.push_back({{{3}, {0.5}, {0.95}}});
+  EXPECT_EQ(matched_ratio(all), 3) << "another keeps it";
+  all.method.kept = {0.5};
+  EXPECT_NEAR(matched_ratio(all), 2, 1e-12) << "more than the method has is no loss";
+}
+
 // Of sorted values: the method has the truth's in another order.
 TEST(Matched, ErrorAgainstATruthIsThatOfDistributions) {
   EXPECT_EQ(error_of({{1, 1, 1}, {3, 1, 2}}, {1, 2, 3}), 0);

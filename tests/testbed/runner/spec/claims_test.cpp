@@ -205,6 +205,16 @@ TEST_F(SpecClaims, MatchedNamesQualityAndRivals) {
   EXPECT_THAT(error_of(study("range", families)), HasSubstr("no meaning"));
   EXPECT_THAT(error_of(study("matched", match + families + "match_reduce = \"every\"\n")),
               HasSubstr("match_reduce"));
+  const std::string keep = "keep = \"radius_error\"\n", within = "keep_within = 0.1\n";
+  const StudySpec kept = load(study("matched", match + families + keep + within)).studies.at(0);
+  EXPECT_EQ(kept.keep, "radius_error");
+  EXPECT_EQ(kept.keep_within, 0.1);
+  EXPECT_EQ(kept.keep_direction, Direction::lower_is_better);
+  EXPECT_THAT(error_of(study("matched", match + families + keep)), HasSubstr("keep_within"));
+  EXPECT_THAT(error_of(study("matched", match + families + within)), HasSubstr("keep: is missing"));
+  EXPECT_THAT(error_of(study("matched", match + families + "keep = \"x\"\n" + within)),
+              HasSubstr("no better and worse"));
+  EXPECT_THAT(error_of(study("spread", keep + within)), HasSubstr("no meaning"));
 }
 
 TEST_F(SpecClaims, WithinSpreadNamesItsYardstick) {
