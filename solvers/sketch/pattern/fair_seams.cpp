@@ -21,12 +21,13 @@ namespace {
 
 constexpr int kSamplesOfWidth = 4;
 constexpr int kMostSamples = 600;  ///< of a line
-constexpr double kFairWidth = 3;   ///< of seams, in mean edges of the surface
+constexpr double kFairWidth = 1;   ///< of seams, in mean edges of the surface
 constexpr int kFollowRings = 3;    ///< about a seam, whose vertices follow it
 constexpr int kSteps = 24;
 constexpr int kEvenPasses = 8;        ///< of steps along a seam
 constexpr int kFollowPasses = 4;      ///< in every step
 constexpr double kMostMove = 0.25;    ///< of a vertex of a seam in a step, in mean edges
+constexpr double kMostOff = 0.1;      ///< from the surface, likewise
 constexpr double kLeastTurned = 0.3;  ///< cosine between a triangle's normal before and after
 constexpr double kLeastArea = 0.1;    ///< of a triangle, over its area before and the mean
 constexpr int kFlipPasses = 3;        ///< in every step
@@ -116,16 +117,13 @@ class SeamFairing {
     for (const SeamEdge& e : kept) stays_[e.edge[0]] = stays_[e.edge[1]] = 1;
     chains_ = seam_chains(seams, stays_);
     mean_area_ = areas_.mean();
-    double sum = 0;
-    const EdgeConnectivity edges(surface.F);
-    for (const Edge& e : edges.edges()) sum += (X_.row(e[0]) - X_.row(e[1])).norm();
-    width_ = kFairWidth * sum / std::max(1, edges.edge_count());
+    width_ = kFairWidth * mean_edge_length(surface.V, EdgeConnectivity(surface.F));
   }
 
   TriMesh fair() {
     find_near();
     std::vector<Eigen::MatrixX3d> places;
-    for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain));
+    for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain, kEvenPasses));
     for (int step = 0; step < kSteps && !chains_.empty(); ++step) {
       before_ = X_;
       for (std::size_t i = 0; i < chains_.size(); ++i) slide(chains_[i], places[i]);
@@ -133,6 +131,7 @@ class SeamFairing {
       flip_stretched();
       undo_turned();
     }
+    leave_surface();
     return {std::move(X_), std::move(F_)};
   }
 
@@ -142,32 +141,50 @@ class SeamFairing {
     return position_of(at, surface_.V, surface_.F).transpose();
   }
 
-  /// Points of a line made fair, where its vertices are to go: as far along it as they are, but for
-  /// short and long steps that are evened out.
-  [[nodiscard]] Eigen::MatrixX3d places_of(const std::vector<int>& chain) const {
-    const Eigen::MatrixX3d line = surface_.V(chain, Eigen::all);
+  /// Points of a line made fair, where its vertices are to go: each to its own point, but for short
+  /// and long steps that are evened out. Lengths are those along the line as it is: along the fair
+  /// one, rough stretches are shorter, and what lies behind them would be drawn towards them.
+  [[nodiscard]] Eigen::MatrixX3d places_of(const std::vector<int>& chain, int even_passes) const {
+    const Eigen::MatrixX3d line = X_(chain, Eigen::all);
     const Eigen::MatrixX3d fair = faired_line(line, width_);
-    const std::vector<double> on_fair = arc_lengths(fair);
     std::vector<double> places = arc_lengths(line);
-    const double scale = on_fair.back() / places.back();
-    for (double& s : places) s *= scale;
-    for (int pass = 0; pass < kEvenPasses; ++pass) {
+    const std::vector<double> of_fair = even_places(places.back(), width_);
+    for (int pass = 0; pass < even_passes; ++pass) {
       const std::vector<double> before = places;
       for (std::size_t i = 1; i + 1 < places.size(); ++i)
         places[i] = (before[i - 1] + 2 * before[i] + before[i + 1]) / 4;
     }
-    return at_lengths(fair, on_fair, places);
+    return at_lengths(fair, of_fair, places);
   }
 
-  void slide(const std::vector<int>& chain, const Eigen::MatrixX3d& places) {
+  /// Vertices of a chain that may move, towards their places.
+  /// @param most  in mean edges
+  void move_towards(const std::vector<int>& chain, const Eigen::MatrixX3d& places, double most) {
     const bool closed = chain.front() == chain.back();
     for (std::size_t i = 1; i < chain.size(); ++i) {
       const int v = chain[i];
       if (stays_[v] || (!closed && i + 1 == chain.size())) continue;
-      Eigen::RowVector3d move = places.row(static_cast<Eigen::Index>(i)) - X_.row(v);
-      move *= std::min(1.0, kMostMove * width_ / kFairWidth / std::max(move.norm(), 1e-300));
-      X_.row(v) = on_surface(X_.row(v) + move);
+      const Eigen::RowVector3d move = places.row(static_cast<Eigen::Index>(i)) - X_.row(v);
+      X_.row(v) += std::min(1.0, most * width_ / kFairWidth / std::max(move.norm(), 1e-300)) * move;
     }
+  }
+
+  void slide(const std::vector<int>& chain, const Eigen::MatrixX3d& places) {
+    move_towards(chain, places, kMostMove);
+    for (const int v : chain)
+      if (!stays_[v]) X_.row(v) = on_surface(X_.row(v));
+  }
+
+  /// The surface is as rough as its triangles are: of what that leaves of a seam's roughness as
+  /// much is taken off as little leaving it does.
+  void leave_surface() {
+    before_ = X_;
+    std::vector<Eigen::MatrixX3d> places;
+    for (const std::vector<int>& chain : chains_) places.push_back(places_of(chain, 0));
+    for (std::size_t i = 0; i < chains_.size(); ++i) move_towards(chains_[i], places[i], kMostOff);
+    const Eigen::MatrixX3d moves = followed(X_ - before_);
+    for (const int v : near_) X_.row(v) = before_.row(v) + moves.row(v);
+    undo_turned();
   }
 
   /// Vertices about the seams, seams left out.
@@ -197,8 +214,7 @@ class SeamFairing {
 
   /// Vertices near to seams move by the mean of what their neighbours move by; the farther ones and
   /// those that stay do not move.
-  void follow() {
-    Eigen::MatrixX3d moves = X_ - surface_.V;
+  [[nodiscard]] Eigen::MatrixX3d followed(Eigen::MatrixX3d moves) const {
     for (int pass = 0; pass < kFollowPasses; ++pass) {
       for (const int v : near_) {
         Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
@@ -210,6 +226,11 @@ class SeamFairing {
         moves.row(v) = sum / count;
       }
     }
+    return moves;
+  }
+
+  void follow() {
+    const Eigen::MatrixX3d moves = followed(X_ - surface_.V);
     for (const int v : near_) X_.row(v) = on_surface(surface_.V.row(v) + moves.row(v));
   }
 

@@ -23,8 +23,9 @@ CutLines faired_lines(const CutLines& lines, double width);
 
 /// Slides the vertices of seams along a surface towards fair lines on it in small steps; those near
 /// to them move by the mean of what their neighbours move by. The surface keeps its shape to what
-/// its triangles can follow: all vertices lie on it as it was. Ends of seams, borders and places
-/// where seams meet stay, edges about them that are neither seams nor sharp are flipped as
+/// its triangles can follow: all vertices lie on it as it was; in the end those of seams leave it
+/// for their fair lines, by a tenth of a mean edge at most. Ends of seams, borders and places where
+/// seams meet stay, edges about them that are neither seams nor sharp are flipped as
 /// triangles are stretched, and a step that would still turn one over is not made there: a seam
 /// keeps a corner where that happens in every step. A seam that slides off a sharp edge of the
 /// surface has triangles that cut the edge off.

@@ -14,6 +14,7 @@
 
 #include "core/connectivity.h"
 #include "core/error.h"
+#include "core/geometry/topology.h"
 #include "core/parallel.h"
 #include "models/sketch/surface/shortest_cut.h"
 #include "solvers/sketch/pattern/cut_candidates.h"
@@ -29,6 +30,9 @@ namespace {
 constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
 constexpr int kBranches = 4;           ///< further cuts that are tried of each plan
 constexpr double kSameScore = 0.02;    ///< cuts nearer than this in error and length are the same
+constexpr double kSamePlan = 1e-3;     ///< plans nearer than this in price and share are the same
+constexpr double kCutPrice = 0.03;     ///< of a suggestion, in the logarithm of the error
+constexpr double kUnsoundPrice = 0.5;  ///< of parts that lie on each other, likewise
 constexpr double kLeastStrain = 1e-6;  ///< mean |log stretch| that is as good as none
 constexpr double kLineWidth = 4;  ///< scale at which the lines of suggestions are fair (mean edges)
 
@@ -38,6 +42,7 @@ struct Plan {
   int next_seam = 0;
   std::vector<SuggestedSeam> suggestions;
   std::vector<Panel> panels;
+  std::vector<std::string> keys;   ///< of the panels: `key_of`
   std::vector<CutTrial> measures;  ///< of the panels as they are
   FlatMeasure whole;               ///< of all of them
   double price = 0;                ///< the less, the better
@@ -83,10 +88,7 @@ class SuggestionSearch {
     if (options.symmetric) trial_.mirror = mirror_axis(surface);
     whole_ = triangle_areas(surface.V, surface.F).sum();
     diagonal_ = bounding_box_diagonal(surface.V);
-    const EdgeConnectivity edges(surface.F);
-    for (const Edge& e : edges.edges())
-      line_width_ += kLineWidth * (surface.V.row(e[0]) - surface.V.row(e[1])).norm() /
-                     static_cast<double>(edges.edge_count());
+    line_width_ = kLineWidth * mean_edge_length(surface.V, EdgeConnectivity(surface.F));
   }
 
   std::vector<SuggestedSeam> suggest();
@@ -99,9 +101,10 @@ class SuggestionSearch {
 
   void measure(Plan& plan);
   [[nodiscard]] bool is_enough(const Plan& plan) const {
-    return !(plan.whole.within < options_.share * plan.whole.area);
+    return plan.whole.sound && !(plan.whole.within < options_.share * plan.whole.area);
   }
   [[nodiscard]] std::vector<Plan> continued(const Plan& plan);
+  void keep_different(std::vector<Plan>& plans) const;
   const std::vector<Scored>& cuts_of(const Plan& plan, std::size_t p);
   [[nodiscard]] std::vector<Scored> best_cuts(const Panel& piece, const CutTrial& before,
                                               const TrialOptions& options) const;
@@ -131,17 +134,19 @@ class SuggestionSearch {
 /// is worth as much early and late, with what length and number of pieces cost.
 void SuggestionSearch::measure(Plan& plan) {
   plan.panels = panels_of(plan.work);
-  std::vector<std::string> keys;
+  plan.keys.clear();
   std::vector<Panel> unknown;
+  std::vector<std::string> keys;
   for (const Panel& panel : plan.panels) {
-    keys.push_back(key_of(panel));
-    if (!measures_.contains(keys.back())) unknown.push_back(panel);
+    const std::string& key = plan.keys.emplace_back(key_of(panel));
+    if (measures_.contains(key)) continue;
+    unknown.push_back(panel);
+    keys.push_back(key);
   }
   std::vector<CutTrial> measured = measured_panels(unknown, trial_);
-  for (std::size_t i = 0; i < unknown.size(); ++i)
-    measures_.emplace(key_of(unknown[i]), std::move(measured[i]));
+  for (std::size_t i = 0; i < keys.size(); ++i) measures_.emplace(keys[i], std::move(measured[i]));
   plan.measures.clear();
-  for (const std::string& key : keys) plan.measures.push_back(measures_.at(key));
+  for (const std::string& key : plan.keys) plan.measures.push_back(measures_.at(key));
   plan.whole = {};
   double length = 0;
   for (const CutTrial& m : plan.measures) {
@@ -151,7 +156,9 @@ void SuggestionSearch::measure(Plan& plan) {
   for (const SuggestedSeam& seam : plan.suggestions) length += seam.lines.length;
   plan.price = std::log(std::max(plan.whole.strain / plan.whole.area, kLeastStrain)) +
                options_.length_weight * length / std::sqrt(whole_) +
-               options_.piece_weight * static_cast<double>(plan.panels.size());
+               options_.piece_weight * static_cast<double>(plan.panels.size()) +
+               kCutPrice * static_cast<double>(plan.suggestions.size()) +
+               (plan.whole.sound ? 0 : kUnsoundPrice);
 }
 
 /// Of the panel with its own seams closed, and of what it is when they are open: a loop may cross
@@ -190,11 +197,13 @@ std::optional<SuggestionSearch::Scored> SuggestionSearch::score(
   if (trial->least_part < std::min(before.least_part, options_.min_part * whole_)) return {};
   const double added = trial->lines.length;
   if (added < kShortestSuggestion || added > kLongestSuggestion) return {};
-  const double removed = (before.flat.strain - trial->flat.strain) / before.flat.strain;
+  const double removed = (before.flat.strain - trial->flat.strain) /
+                         std::max(before.flat.strain, kLeastStrain * before.flat.area);
   const double opened = std::max(0.0, trial->opening_length - before.opening_length);
   const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area) +
                       options_.piece_weight * (trial->parts - before.parts);
-  return Scored{std::move(*trial), removed - cost};
+  const double mended = !before.flat.sound && trial->flat.sound ? kUnsoundPrice : 0;
+  return Scored{std::move(*trial), removed - cost + mended};
 }
 
 /// `best_cuts` that leave no more pieces than are wanted; found once of a piece that several plans
@@ -206,7 +215,7 @@ const std::vector<SuggestionSearch::Scored>& SuggestionSearch::cuts_of(const Pla
     const int others = static_cast<int>(plan.panels.size()) - 1;
     options.most_parts = std::max(plan.measures[p].parts, most_pieces_ - others);
   }
-  const std::string key = key_of(plan.panels[p]) + std::to_string(options.most_parts);
+  const std::string key = plan.keys[p] + std::to_string(options.most_parts);
   const auto known = cuts_.find(key);
   if (known != cuts_.end()) return known->second;
   return cuts_.emplace(key, best_cuts(plan.panels[p], plan.measures[p], options)).first->second;
@@ -272,7 +281,7 @@ std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam su
       least = std::min(least, triangle_areas(piece.mesh.V, piece.mesh.F).sum());
     return least;
   };
-  Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, 0};
+  Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, {}, 0};
   if (!further.work.cut(suggestion.cut, plan.next_seam)) return {};
   if (most_pieces_ > 0 &&
       std::ssize(cut_surface(further.work.mesh, further.work.seams)) > most_pieces_) {
@@ -326,12 +335,13 @@ std::vector<Plan> SuggestionSearch::continued(const Plan& plan) {
   std::vector<std::size_t> order(plan.panels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return plan.measures[a].flat.strain > plan.measures[b].flat.strain;
+    const FlatMeasure &of_a = plan.measures[a].flat, &of_b = plan.measures[b].flat;
+    return std::pair(!of_a.sound, of_a.strain) > std::pair(!of_b.sound, of_b.strain);
   });
   std::vector<Plan> plans;
   for (const std::size_t p : order) {
     const FlatMeasure& then = plan.measures[p].flat;
-    if (!(then.within < then.area)) continue;
+    if (then.sound && !(then.within < then.area)) continue;
     for (const Scored& best : cuts_of(plan, p)) {
       if (std::ssize(plans) >= kBranches) break;
       std::optional<Plan> further = applied(plan, suggestion_of(plan, p, best.trial));
@@ -342,6 +352,23 @@ std::vector<Plan> SuggestionSearch::continued(const Plan& plan) {
   return plans;
 }
 
+/// Plans that come to the same, by other cuts or in another order, are one.
+void SuggestionSearch::keep_different(std::vector<Plan>& plans) const {
+  const auto same = [](const Plan& a, const Plan& b) {
+    return std::abs(a.price - b.price) < kSamePlan &&
+           std::abs(a.whole.within - b.whole.within) < kSamePlan * a.whole.area;
+  };
+  std::vector<Plan> different;
+  for (Plan& plan : plans) {
+    const bool is_new = std::none_of(different.begin(), different.end(),
+                                     [&](const Plan& other) { return same(plan, other); });
+    if (is_new) different.push_back(std::move(plan));
+    if (std::ssize(different) == options_.plans) break;
+  }
+  plans = std::move(different);
+}
+
+/// Until a plan is enough, or the best of them is no better than the one that it was made of.
 std::vector<SuggestedSeam> SuggestionSearch::suggest() {
   measure(first_);
   std::vector<Plan> plans{first_};
@@ -353,11 +380,13 @@ std::vector<SuggestedSeam> SuggestionSearch::suggest() {
       next.insert(next.end(), std::make_move_iterator(further.begin()),
                   std::make_move_iterator(further.end()));
     }
-    if (next.empty()) break;
     std::stable_sort(next.begin(), next.end(), cheaper);
     std::stable_partition(next.begin(), next.end(),
                           [&](const Plan& plan) { return is_enough(plan); });
-    if (std::ssize(next) > options_.plans) next.resize(static_cast<std::size_t>(options_.plans));
+    if (next.empty()) break;
+    const bool better = is_enough(next.front()) || cheaper(next.front(), plans.front());
+    if (!better && options_.rule == SuggestionRule::measured) break;
+    keep_different(next);
     plans = std::move(next);
   }
   return plans.front().suggestions;

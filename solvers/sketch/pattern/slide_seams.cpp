@@ -10,6 +10,12 @@
 #include "solvers/sketch/pattern/fair_seams.h"
 
 namespace geoprior::sketch {
+namespace {
+
+/// Share of the area that a fair seam may cost.
+constexpr double kMostLost = 0.004;
+
+}  // namespace
 
 TriMesh slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
                     std::span<const SeamEdge> kept, const SlideLimits& limits,
@@ -33,7 +39,7 @@ TriMesh slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
                  [number = seam](const SeamEdge& e) { return e.seam != number; });
     TriMesh tried = fair_seams(made, edges, stay);
     const FlatMeasure after = measured(tried);
-    const double least = std::min(before.within / before.area, limits.share);
+    const double least = std::min(before.within / before.area - kMostLost, limits.share);
     if (after.within < least * after.area || (before.sound && !after.sound)) continue;
     made = std::move(tried);
     before = after;

@@ -135,5 +135,31 @@ TEST(FairSeams, StraightenASeamOnAPlaneAndTurnNoTriangle) {
   EXPECT_EQ(X.row(chain.front()), square.V.row(chain.front()));
 }
 
+// What is rough shortens when it is made fair: what is straight behind it stays where it is.
+TEST(FairSeams, LeaveWhatIsStraight) {
+  const TriMesh square = unit_square(24);
+  const EdgeConnectivity edges(square.F);
+  std::vector<SeamEdge> seam;
+  int at = 12;  // along x = 1/2, to and fro by a cell as far as the middle
+  const auto go = [&](int to) {
+    ASSERT_TRUE(edges.find(at, to));
+    seam.push_back({{at, to}, 0});
+    at = to;
+  };
+  for (int i = 0; i < 24; ++i) {
+    if (i < 12 && i % 2 == 1) go(at % 25 == 12 ? at + 1 : at - 1);
+    go(at + 25);
+  }
+  const TriMesh fair = fair_seams(square, seam, {});
+  double moved = 0, smoothed = 0;
+  for (int i = 0; i <= 24; ++i) {
+    const int v = 25 * i + 12;
+    const double by = (fair.V.row(v) - square.V.row(v)).norm() * 24;  // cells
+    (i > 14 ? moved : smoothed) = std::max(i > 14 ? moved : smoothed, by);
+  }
+  EXPECT_GT(smoothed, 0.2);
+  EXPECT_LT(moved, 0.1);
+}
+
 }  // namespace
 }  // namespace geoprior::sketch

@@ -198,6 +198,27 @@ TEST(SuggestSeams, WhatIsDevelopableWantsNone) {
   EXPECT_TRUE(suggest_seams(slit, flats::seam_along(path, 0), {}).empty());
 }
 
+// A strip that winds round an axis by more than a turn is developable, and lies on itself when it
+// is laid flat.
+TEST(SuggestSeams, WhatLiesOnItselfIsCutApart) {
+  const TriMesh strip = flats::grid(90, 6, [](int i, int j) {
+    const double turn = 2.6 * kPi * i / 90, radius = 1 - 0.05 * j;
+    return Eigen::Vector3d(radius * std::cos(turn), radius * std::sin(turn), 0.01 * turn);
+  });
+  const auto overlaps = [](const SeamedSurface& surface) {
+    std::size_t count = 0;
+    for (const CutTrial& of : measured_panels(panels_of(surface), trial_options({}, 0.02)))
+      count += of.flat.sound ? 0 : 1;
+    return count;
+  };
+  SeamedSurface surface{strip, {}};
+  ASSERT_EQ(overlaps(surface), 1U);
+  const auto suggested = suggest_seams(strip, {}, {});
+  ASSERT_EQ(suggested.size(), 1U);
+  ASSERT_TRUE(surface.cut(suggested[0].cut, 0));
+  EXPECT_EQ(overlaps(surface), 0U);
+}
+
 TEST(SuggestSeams, MoreGoresFitAHemisphereBetter) {
   // k gores of half width pi/k: what is left of their error falls with 1/k^2.
   const TriMesh mesh = dome(1);
