@@ -213,8 +213,14 @@ class Grader::Impl {
                                                           in.name) != study.cases.end();
       const bool both = named && is_whole(input) && is_whole(output) && input != output;
       mixed = mixed || both;
-      changed.cases.push_back(
-          both ? with_variant(in, blended_values(*input, *output, study.quantity, s)) : in);
+      if (!both) {
+        changed.cases.push_back(in);
+        continue;
+      }
+      VariantRecord blended = blended_values(*input, *output, study.quantity, s);
+      for (const std::string& quality : {study.match, study.keep})
+        if (!quality.empty()) blended = blended_values(*input, blended, quality, s);
+      changed.cases.push_back(with_variant(in, blended));
     }
     if (!mixed) throw Error("no case has the input", "study '" + study.name + "'");
     return judge_study(claim, make_studies(one, changed)).holds();
