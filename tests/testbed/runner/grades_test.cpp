@@ -212,6 +212,42 @@ TEST_F(Grades, DiagnosticsAndStudiesMixValues) {
   EXPECT_EQ(grader.holds_at(decided[2], Graded::values, 14), false);
 }
 
+// The input's cost at the method's quality would have no rival: both are mixed.
+TEST_F(Grades, MatchedStudiesMixCostAndQuality) {
+  RunRecord record = values_of_cases();
+  record.cases.resize(1);
+  for (VariantRecord& variant : record.cases[0].variants) {
+    auto& work = variant.diagnostics["work"];
+    std::fill(work.values.begin(), work.values.end(), 10.0);
+    variant.diagnostics["error"] = work;
+    auto& error = variant.diagnostics["error"].values;
+    std::fill(error.begin(), error.end(), variant.name == "small" ? 2.0 : 1.0);
+  }
+  StudySpec study;
+  study.name = "equal";
+  study.kind = StudyKind::matched;
+  study.variant = "large";
+  study.quantity = "diagnostic:work";
+  study.match = "diagnostic:error";
+  study.families = {{"small"}};
+  ClaimSpec cheaper;
+  cheaper.text = "cheaper";
+  cheaper.metric = "study:equal";
+  cheaper.is = Comparison::greater_equal;
+  cheaper.value = 1.1;
+  Experiment experiment;
+  experiment.topic = "toy-circle";
+  experiment.input = "small";
+  experiment.claims = {cheaper};
+  experiment.studies = {study};
+  const std::vector<Topic> topics = toy::topics();
+  Grader grader(experiment, topics, record, folder());
+  const std::vector<ClaimRecord> decided = decide_claims(experiment, record);
+  ASSERT_EQ(decided.size(), 1U);
+  EXPECT_TRUE(decided[0].holds);
+  EXPECT_DOUBLE_EQ(grader.grade(decided[0]).least, 0.05) << "the input itself costs what it costs";
+}
+
 // A shape that does not change, and a method that ends elsewhere.
 TEST_F(Grades, PairAnInputOfOneFrameWithAllAndLastFramesWithEachOther) {
   RunRecord record = values_of_cases();
