@@ -48,10 +48,27 @@ std::vector<std::vector<int>> undrawn_chains(const Part& strokes) {
   return chains;
 }
 
-LineTurning chain_turning(const Part& part, std::vector<int> chain) {
+/// @param normals  of the part's points; none: in space
+LineTurning chain_turning(const Part& part, std::vector<int> chain,
+                          const Eigen::MatrixX3d* normals = nullptr) {
   const bool closed = chain.size() > 3 && chain.front() == chain.back();
   if (closed) chain.pop_back();
-  return line_turning(part.points(chain, Eigen::all), closed);
+  const Eigen::MatrixX3d points = part.points(chain, Eigen::all);
+  if (!normals) return line_turning(points, closed);
+  return line_turning_within(points, (*normals)(chain, Eigen::all), closed);
+}
+
+double over_length(const LineTurning& of) { return of.turning / of.length; }
+
+LineTurning silhouette_turning(const SketchScene& scene) {
+  LineTurning silhouettes;
+  for (const DrawnSilhouette& drawn : scene.silhouettes) {
+    Eigen::MatrixX3d line = Eigen::MatrixX3d::Zero(std::ssize(drawn.outline), 3);
+    for (Eigen::Index i = 0; i < line.rows(); ++i)
+      line.row(i).head<2>() = drawn.outline[static_cast<std::size_t>(i)].transpose();
+    silhouettes.add(line_turning(line, true));
+  }
+  return silhouettes;
 }
 
 }  // namespace
@@ -76,27 +93,29 @@ PieceMeasures piece_measures(const SketchScene& /*scene*/, const Frame& frame) {
   return worst;
 }
 
-std::optional<double> suggested_turning(const SketchScene& scene, const Frame& frame) {
-  LineTurning seams, silhouettes;
+SuggestedTurning suggested_turning(const SketchScene& scene, const Frame& frame) {
+  LineTurning seams, within;
   if (frame.find_part("pattern") == nullptr) return {};
   if (const Part* strokes = frame.find_part("strokes")) {
     if (strokes->find_array("view") != nullptr) {
-      for (const std::vector<int>& chain : undrawn_chains(*strokes))
+      const Part& surface = *frame.find_part("surface");
+      const Eigen::MatrixX3d normals = vertex_normals({surface.points, surface.triangles});
+      for (const std::vector<int>& chain : undrawn_chains(*strokes)) {
         seams.add(chain_turning(*strokes, chain));
+        within.add(chain_turning(*strokes, chain, &normals));
+      }
     }
   }
   const Part* shown = frame.find_part("suggestions");
   if (!(seams.length > 0) && shown != nullptr) {
     for (const std::vector<int>& line : shown->lines) seams.add(chain_turning(*shown, line));
   }
-  for (const DrawnSilhouette& drawn : scene.silhouettes) {
-    Eigen::MatrixX3d line = Eigen::MatrixX3d::Zero(std::ssize(drawn.outline), 3);
-    for (Eigen::Index i = 0; i < line.rows(); ++i)
-      line.row(i).head<2>() = drawn.outline[static_cast<std::size_t>(i)].transpose();
-    silhouettes.add(line_turning(line, true));
-  }
-  if (!(seams.length > 0) || !(silhouettes.turning > 0)) return {};
-  return seams.turning / seams.length / (silhouettes.turning / silhouettes.length);
+  const LineTurning silhouettes = silhouette_turning(scene);
+  SuggestedTurning result;
+  if (!(silhouettes.turning > 0)) return result;
+  if (seams.length > 0) result.in_space = over_length(seams) / over_length(silhouettes);
+  if (within.length > 0) result.within = over_length(within) / over_length(silhouettes);
+  return result;
 }
 
 std::vector<MetricGroup> seam_metrics() {
@@ -127,7 +146,12 @@ std::vector<MetricGroup> seam_metrics() {
       frame_metrics<SketchScene>(suggested_turning)
           .row("suggested_turning", "1",
                "turning over length of suggested seams, over that of the drawn silhouettes", kLess,
-               {0.02, 0.05}, [](const std::optional<double>& turning) { return turning; }));
+               {0.02, 0.05}, &SuggestedTurning::in_space)
+          .row(
+              "suggested_turning_within", "1",
+              "the same of those that were cut, within the surface as their pattern shows it: what "
+              "goes straight around a sleeve does not turn",
+              kLess, {0.02, 0.05}, &SuggestedTurning::within));
   return groups;
 }
 

@@ -19,9 +19,13 @@ struct PieceMeasures {
 };
 PieceMeasures piece_measures(const SketchScene& scene, const Frame& frame);
 
-/// Turning over length of the seams that were suggested, cut or only shown, over that of the drawn
-/// silhouettes; nothing where none is suggested or there is no silhouette.
-std::optional<double> suggested_turning(const SketchScene& scene, const Frame& frame);
+/// Turning over length of suggested seams, over that of the drawn silhouettes; nothing where none
+/// is suggested or there is no silhouette.
+struct SuggestedTurning {
+  std::optional<double> in_space;  ///< of those that were cut, else of those that are shown
+  std::optional<double> within;    ///< within the surface, of those that were cut
+};
+SuggestedTurning suggested_turning(const SketchScene& scene, const Frame& frame);
 
 /// Rows of both.
 std::vector<MetricGroup> seam_metrics();

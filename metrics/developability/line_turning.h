@@ -27,4 +27,11 @@ struct LineTurning {
 /// @param closed  the last point is joined to the first
 LineTurning line_turning(const Eigen::MatrixX3d& points, bool closed);
 
+/// The same within a surface, the integral of |geodesic curvature|: 0 along geodesics, 2 pi cos t
+/// around a circle of a sphere at the angle t from its pole. Of a seam it is what its pattern
+/// shows.
+/// @param normals  n x 3, unit normals of the surface at the points
+LineTurning line_turning_within(const Eigen::MatrixX3d& points, const Eigen::MatrixX3d& normals,
+                                bool closed);
+
 }  // namespace geoprior

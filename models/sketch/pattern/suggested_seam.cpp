@@ -9,7 +9,9 @@
 namespace geoprior::sketch {
 
 bool SeamedSurface::cut(std::span<const SurfacePath> paths, int seam) {
-  std::optional<SurfaceSplit> split = split_along(mesh, paths);
+  std::vector<Edge> kept;
+  for (const SeamEdge& e : seams) kept.push_back(e.edge);
+  std::optional<SurfaceSplit> split = split_along(mesh, paths, kept);
   if (!split || split->path.empty()) return false;
   std::vector<SeamEdge> finer;
   for (const SeamEdge& e : seams) {

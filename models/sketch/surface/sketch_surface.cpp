@@ -301,7 +301,10 @@ void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
   seam.id = id;
   seam.view = seam.number = -1;
   for (const std::vector<SurfacePath>& paths : cuts) {
-    const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths);
+    std::vector<Edge> kept = seam.edges;
+    for (const StrokePath& path : surface.seams)
+      kept.insert(kept.end(), path.edges.begin(), path.edges.end());
+    const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths, kept);
     if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");
     const int first_new = surface.hull.mesh.vertex_count();
     for (StrokePath& path : surface.seams) path.edges = split->split_edges(path.edges, first_new);

@@ -8,13 +8,20 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/topology.h"
+
 namespace geoprior::sketch {
 namespace {
 
 class PathSplitter {
  public:
-  explicit PathSplitter(const TriMesh& mesh)
-      : mesh_(mesh), edges_(mesh.F), node_(edges_.edge_count(), -1) {}
+  PathSplitter(const TriMesh& mesh, std::span<const Edge> kept)
+      : mesh_(mesh),
+        edges_(mesh.F),
+        stays_(boundary_vertices(mesh.F, mesh.vertex_count())),
+        node_(edges_.edge_count(), -1) {
+    for (const Edge& e : kept) stays_[e[0]] = stays_[e[1]] = true;
+  }
 
   std::optional<SurfaceSplit> split(std::span<const SurfacePath> paths) {
     for (const SurfacePath& path : paths) add_nodes(path);
@@ -25,19 +32,29 @@ class PathSplitter {
     }
     straighten(made);
     for (const std::vector<int>& line : lines_) add_edges(line);
+    for (const auto& [v, crossing] : nearest_) split_.moved.emplace_back(v, crossing.second);
     return std::move(split_);
   }
 
  private:
   int node_of(const EdgePoint& point) {
-    if (point.is_vertex() || point.share < kSnapShare) return point.edge[0];
-    if (point.share > 1 - kSnapShare) return point.edge[1];
+    if (point.is_vertex()) return point.edge[0];
+    if (point.share < kSnapShare) return moved_onto(point, point.edge[0], point.share);
+    if (point.share > 1 - kSnapShare) return moved_onto(point, point.edge[1], 1 - point.share);
     int& node = node_[*edges_.find(point.edge[0], point.edge[1])];
     if (node < 0) {
       node = mesh_.vertex_count() + static_cast<int>(split_.added.size());
       split_.added.push_back(point);
     }
     return node;
+  }
+
+  /// The vertex, which goes to the nearest of its crossings unless it lies on the border.
+  int moved_onto(const EdgePoint& point, int v, double share) {
+    if (stays_[v]) return v;
+    const auto [at, is_new] = nearest_.try_emplace(v, share, point);
+    if (!is_new && share < at->second.first) at->second = {share, point};
+    return v;
   }
 
   void add_nodes(const SurfacePath& path) {
@@ -72,9 +89,13 @@ class PathSplitter {
         return corners[0] == b || corners[1] == b || corners[2] == b;
       });
     };
+    const auto is_at_vertex = [&](int node) {
+      return node < mesh_.vertex_count() && !nearest_.contains(node);
+    };
     for (std::vector<int>& line : lines_) {
       for (std::size_t i = 1; i + 1 < line.size() && line.size() > 4;) {
-        if (uses[line[i]] == 1 && is_triangle(line[i - 1], line[i], line[i + 1])) {
+        if (uses[line[i]] == 1 && is_at_vertex(line[i]) &&
+            is_triangle(line[i - 1], line[i], line[i + 1])) {
           line.erase(line.begin() + static_cast<std::ptrdiff_t>(i));
           i = std::max<std::size_t>(1, i - 1);
         } else {
@@ -124,9 +145,11 @@ class PathSplitter {
 
   const TriMesh& mesh_;
   EdgeConnectivity edges_;
-  std::vector<int> node_;                ///< new vertex of each edge, -1: none
-  std::vector<std::vector<int>> lines_;  ///< vertices along the paths
-  std::set<Edge> wanted_;                ///< edges of the paths as they were given
+  std::vector<bool> stays_;
+  std::map<int, std::pair<double, EdgePoint>> nearest_;  ///< crossings that a vertex stands in for
+  std::vector<int> node_;                                ///< new vertex of each edge, -1: none
+  std::vector<std::vector<int>> lines_;                  ///< vertices along the paths
+  std::set<Edge> wanted_;                                ///< edges of the paths as they were given
   SurfaceSplit split_;
 };
 
@@ -137,6 +160,7 @@ Eigen::MatrixX3d SurfaceSplit::interpolated(const Eigen::MatrixX3d& values) cons
   result.topRows(values.rows()) = values;
   for (std::size_t i = 0; i < added.size(); ++i)
     result.row(values.rows() + i) = added[i].position(values);
+  for (const auto& [v, place] : moved) result.row(v) = place.position(values);
   return result;
 }
 
@@ -158,8 +182,9 @@ std::vector<Edge> SurfaceSplit::split_edges(std::span<const Edge> edges, int fir
   return finer;
 }
 
-std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths) {
-  return PathSplitter(mesh).split(paths);
+std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths,
+                                        std::span<const Edge> kept) {
+  return PathSplitter(mesh, kept).split(paths);
 }
 
 }  // namespace geoprior::sketch

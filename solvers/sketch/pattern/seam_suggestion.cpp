@@ -1,5 +1,6 @@
 #include "solvers/sketch/pattern/seam_suggestion.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,12 +29,16 @@ namespace {
 /// Length of all cuts of a suggestion: shorter ones are not worth sewing, longer ones are not of
 /// anything that is sewn (m). Ours.
 constexpr double kShortestSuggestion = 0.02, kLongestSuggestion = 10;
-constexpr int kBranches = 4;           ///< further cuts that are tried of each plan
-constexpr double kSameScore = 0.02;    ///< cuts nearer than this in error and length are the same
-constexpr double kSamePlan = 1e-3;     ///< plans nearer than this in price and share are the same
-constexpr double kCutPrice = 0.03;     ///< of a suggestion, in the logarithm of the error
-constexpr double kUnsoundPrice = 0.5;  ///< of parts that lie on each other, likewise
-constexpr double kLeastStrain = 1e-6;  ///< mean |log stretch| that is as good as none
+constexpr int kBranches = 4;             ///< further cuts that are tried of each plan
+constexpr double kSameScore = 0.02;      ///< cuts nearer than this in error and length are the same
+constexpr double kSamePlan = 1e-3;       ///< plans nearer than this in price and share are the same
+constexpr double kCutPrice = 0.03;       ///< of a suggestion, in the logarithm of the error
+constexpr double kUnsoundPrice = 1;      ///< of parts that lie on each other, likewise
+constexpr double kMissingPrice = 5;      ///< of the area that `share` still lacks, over all of it
+constexpr double kTurningPrice = 0.005;  ///< of a radian that a cut turns by, likewise
+constexpr double kNear = 0.03;  ///< of mirror images, in diagonals of the surface and in area
+constexpr double kLopsidedPrice = 0.02;  ///< of a cut beside the mirror plane of its piece
+constexpr double kLeastStrain = 1e-4;    ///< mean |log stretch| that is as good as none
 constexpr double kLineWidth = 4;  ///< scale at which the lines of suggestions are fair (mean edges)
 
 /// A surface with the suggestions that were cut into it.
@@ -77,6 +82,37 @@ std::string key_of(const Panel& panel) {
   return key;
 }
 
+std::pair<double, Eigen::RowVector3d> area_and_centre(const TriMesh& mesh) {
+  const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    for (int k = 0; k < 3; ++k) sum += areas(t) / 3 * mesh.V.row(mesh.F(t, k));
+  }
+  return {areas.sum(), sum / areas.sum()};
+}
+
+/// The middle of lines, by their length.
+Eigen::RowVector3d middle_of(const CutLines& lines) {
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  for (const Eigen::MatrixX3d& x : lines.points) {
+    for (Eigen::Index k = 1; k < x.rows(); ++k)
+      sum += (x.row(k) - x.row(k - 1)).norm() * (x.row(k) + x.row(k - 1)) / 2;
+  }
+  return sum / lines.length;
+}
+
+/// How much lines turn (rad).
+double turning_of(const CutLines& lines) {
+  double turning = 0;
+  for (const Eigen::MatrixX3d& x : lines.points) {
+    for (Eigen::Index k = 1; k + 1 < x.rows(); ++k) {
+      const Eigen::RowVector3d a = x.row(k) - x.row(k - 1), b = x.row(k + 1) - x.row(k);
+      turning += std::atan2(a.cross(b).norm(), a.dot(b));
+    }
+  }
+  return turning;
+}
+
 class SuggestionSearch {
  public:
   SuggestionSearch(const TriMesh& surface, std::span<const SeamEdge> seams,
@@ -100,8 +136,17 @@ class SuggestionSearch {
   };
 
   void measure(Plan& plan);
+  /// Whether a place lies in the mirror plane of the surface.
+  [[nodiscard]] bool is_centred(const Eigen::RowVector3d& x) const {
+    return (trial_.mirror->mirrored(x) - x).norm() < kNear * diagonal_;
+  }
   [[nodiscard]] bool is_enough(const Plan& plan) const {
     return plan.whole.sound && !(plan.whole.within < options_.share * plan.whole.area);
+  }
+  /// Of a piece that is its own mirror image, cuts beside the plane.
+  [[nodiscard]] bool is_lopsided(const TriMesh& piece, const CutLines& lines) const {
+    return trial_.mirror && is_centred(area_and_centre(piece).second) &&
+           !is_centred(middle_of(lines));
   }
   [[nodiscard]] std::vector<Plan> continued(const Plan& plan);
   void keep_different(std::vector<Plan>& plans) const;
@@ -148,16 +193,19 @@ void SuggestionSearch::measure(Plan& plan) {
   plan.measures.clear();
   for (const std::string& key : plan.keys) plan.measures.push_back(measures_.at(key));
   plan.whole = {};
-  double length = 0;
+  double length = 0, seams = 0;
   for (const CutTrial& m : plan.measures) {
     plan.whole.add(m.flat);
     length += m.opening_length;
   }
-  for (const SuggestedSeam& seam : plan.suggestions) length += seam.lines.length;
+  for (const SuggestedSeam& seam : plan.suggestions) {
+    length += seam.lines.length;
+    seams += seam.price;
+  }
   plan.price = std::log(std::max(plan.whole.strain / plan.whole.area, kLeastStrain)) +
                options_.length_weight * length / std::sqrt(whole_) +
-               options_.piece_weight * static_cast<double>(plan.panels.size()) +
-               kCutPrice * static_cast<double>(plan.suggestions.size()) +
+               options_.piece_weight * static_cast<double>(plan.panels.size()) + seams +
+               kMissingPrice * std::max(0.0, options_.share - plan.whole.within / plan.whole.area) +
                (plan.whole.sound ? 0 : kUnsoundPrice);
 }
 
@@ -197,11 +245,14 @@ std::optional<SuggestionSearch::Scored> SuggestionSearch::score(
   if (trial->least_part < std::min(before.least_part, options_.min_part * whole_)) return {};
   const double added = trial->lines.length;
   if (added < kShortestSuggestion || added > kLongestSuggestion) return {};
-  const double removed = (before.flat.strain - trial->flat.strain) /
-                         std::max(before.flat.strain, kLeastStrain * before.flat.area);
+  const double least = kLeastStrain * before.flat.area;
+  const double removed =
+      1 - std::max(trial->flat.strain, least) / std::max(before.flat.strain, least);
   const double opened = std::max(0.0, trial->opening_length - before.opening_length);
   const double cost = options_.length_weight * (added + opened) / std::sqrt(before.flat.area) +
-                      options_.piece_weight * (trial->parts - before.parts);
+                      kTurningPrice * turning_of(trial->lines) +
+                      options_.piece_weight * (trial->parts - before.parts) +
+                      (is_lopsided(piece.piece.mesh, trial->lines) ? kLopsidedPrice : 0);
   const double mended = !before.flat.sound && trial->flat.sound ? kUnsoundPrice : 0;
   return Scored{std::move(*trial), removed - cost + mended};
 }
@@ -248,19 +299,10 @@ std::vector<SuggestionSearch::Scored> SuggestionSearch::best_cuts(
 /// The other piece that lies where the image of this one is, with about its area.
 std::optional<std::size_t> SuggestionSearch::mirror_image(const std::vector<Panel>& pieces,
                                                           std::size_t piece) const {
-  constexpr double kNear = 0.03;  // of the diagonal, and of the area
   if (!trial_.mirror || options_.rule != SuggestionRule::measured) return {};
-  const auto area_and_centre = [](const TriMesh& mesh) {
-    const Eigen::VectorXd areas = triangle_areas(mesh.V, mesh.F);
-    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-    for (int t = 0; t < mesh.triangle_count(); ++t) {
-      for (int k = 0; k < 3; ++k) sum += areas(t) / 3 * mesh.V.row(mesh.F(t, k));
-    }
-    return std::pair(areas.sum(), Eigen::RowVector3d(sum / areas.sum()));
-  };
   const auto [area, centre] = area_and_centre(pieces[piece].piece.mesh);
+  if (is_centred(centre)) return {};  // its own image
   const Eigen::RowVector3d image = trial_.mirror->mirrored(centre);
-  if ((image - centre).norm() < kNear * diagonal_) return {};  // its own image
   for (std::size_t other = 0; other < pieces.size(); ++other) {
     if (other == piece) continue;
     const auto [other_area, other_centre] = area_and_centre(pieces[other].piece.mesh);
@@ -295,6 +337,8 @@ std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam su
   const bool crumbs =
       least_piece(opened) < std::min(least_piece(plan.work), options_.min_part * whole_);
   if (crumbs && options_.rule == SuggestionRule::measured) return {};
+  suggestion.price = kCutPrice + kTurningPrice * turning_of(suggestion.lines);
+  if (trial_.mirror && !is_centred(middle_of(suggestion.lines))) suggestion.price += kLopsidedPrice;
   if (options_.fair) {
     suggestion.lines = faired_lines(suggestion.lines, line_width_);
     suggestion.opening_lines = faired_lines(suggestion.opening_lines, line_width_);

@@ -12,8 +12,8 @@
 namespace geoprior::sketch {
 namespace {
 
-/// Share of the area that a fair seam may cost.
-constexpr double kMostLost = 0.004;
+/// Share of the area that all fair seams together may cost.
+constexpr double kMostLost = 0.01;
 
 }  // namespace
 
@@ -33,13 +33,13 @@ TriMesh slide_seams(const TriMesh& surface, std::span<const SeamEdge> seams,
 
   TriMesh made = surface;
   FlatMeasure before = measured(made);
+  const double least = std::min(before.within / before.area - kMostLost, limits.share);
   for (const auto& [seam, edges] : slide) {
     std::vector<SeamEdge> stay;
     std::copy_if(all.begin(), all.end(), std::back_inserter(stay),
                  [number = seam](const SeamEdge& e) { return e.seam != number; });
     TriMesh tried = fair_seams(made, edges, stay);
     const FlatMeasure after = measured(tried);
-    const double least = std::min(before.within / before.area - kMostLost, limits.share);
     if (after.within < least * after.area || (before.sound && !after.sound)) continue;
     made = std::move(tried);
     before = after;

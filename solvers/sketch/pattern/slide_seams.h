@@ -15,9 +15,10 @@ struct SlideLimits {
 };
 
 /// Makes seams fair (`fair_seams`) where the pattern allows it: one after the other slides, and
-/// goes back when less of the area is within the tolerance than is enough and by more than 0.4 % of
-/// it than before, or when the parts come to lie on each other. Seams on sharp edges go back, since
-/// what slides off an edge cuts it off. Work is that of laying all flat once a seam and once more.
+/// goes back when less of the area is within the tolerance than is enough, and by more than 1 % of
+/// it than before all of them, or when the parts come to lie on each other. Seams on sharp edges go
+/// back, since what slides off an edge cuts it off. Work is that of laying all flat once a seam and
+/// once more.
 /// @param seams  edges that may slide
 /// @param kept   further edges that it is cut along, whose vertices stay
 /// @return       the surface, as `fair_seams` gives it

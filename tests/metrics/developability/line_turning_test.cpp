@@ -51,6 +51,21 @@ TEST(LineTurning, OfAStraightLineIsNothingAndOfAZigzagItsCorners) {
   EXPECT_NEAR(turning.length, 10 * std::sqrt(2.0), 1e-12);
 }
 
+// Circles of a sphere: 2 pi cos t at the angle t from the pole, nothing along the equator.
+TEST(LineTurning, WithinASphereIsThatOfGeodesicCurvature) {
+  constexpr int kCount = 400;
+  for (const double t : {0.3, 1.0, kPi / 2}) {
+    Eigen::MatrixX3d normals(kCount, 3);
+    for (int i = 0; i < kCount; ++i) {
+      const double a = 2 * kPi * i / kCount;
+      normals.row(i) << std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t);
+    }
+    const LineTurning turning = line_turning_within(0.2 * normals, normals, true);
+    EXPECT_NEAR(turning.turning, 2 * kPi * std::cos(t), 1e-3) << t;
+    EXPECT_NEAR(turning.length, 0.4 * kPi * std::sin(t), 1e-4) << t;
+  }
+}
+
 TEST(LineTurning, OfNothingIsNothing) {
   EXPECT_EQ(line_turning(Eigen::MatrixX3d(0, 3), true).turning, 0);
   EXPECT_EQ(line_turning(Eigen::MatrixX3d::Ones(1, 3), false).length, 0);

@@ -12,6 +12,7 @@
 #include "solvers/sketch/pattern/conformal_scale.h"
 #include "solvers/sketch/pattern/cut_candidates.h"
 #include "solvers/sketch/pattern/cut_trial.h"
+#include "solvers/sketch/pattern/level_lines.h"
 #include "tests/sketch/pattern/flat_surfaces.h"
 
 namespace geoprior::sketch {
@@ -104,6 +105,34 @@ TEST(SplitAlong, KeepsTheAreaAndHasThePathAsEdges) {
   for (const Edge& e : split->path) sum += (V.row(e[0]) - V.row(e[1])).norm();
   EXPECT_NEAR(sum, length(path, plane.V), 0.03);
   EXPECT_GT(split->added.size(), 3u);
+}
+
+// A slanted line over a grid: the path keeps to it where vertices stand in for crossings, too, but
+// for those that are kept.
+TEST(SplitAlong, VerticesThatStandInForCrossingsGoThere) {
+  const TriMesh plane =
+      flats::grid(10, 10, [](int i, int j) { return Eigen::Vector3d(0.1 * i, 0.1 * j, 0); });
+  const auto off = [](const Eigen::RowVector3d& x) { return x.y() - (0.112 + 0.73 * x.x()); };
+  Eigen::VectorXd value(plane.vertex_count());
+  for (int v = 0; v < plane.vertex_count(); ++v) value(v) = off(plane.V.row(v));
+  const std::vector<SurfacePath> line = level_lines(plane, value, 0);
+  ASSERT_EQ(line.size(), 1u);
+  const auto split = split_along(plane, line);
+  ASSERT_TRUE(split);
+  ASSERT_GT(split->moved.size(), 1u);
+  const Eigen::MatrixX3d V = split->interpolated(plane.V);
+  EXPECT_GT(triangle_areas(V, split->triangles).minCoeff(), 0);
+  for (const Edge& e : split->path) {
+    for (const int v : e) {
+      const bool is_end = v == line[0].front().edge[0] || v == line[0].back().edge[0];
+      EXPECT_NEAR(is_end ? 0 : off(V.row(v)), 0, 1e-12) << v;
+    }
+  }
+  const int v = split->moved.front().first;
+  const Edge kept{v, split->moved.front().second.edge[split->moved.front().second.edge[0] == v]};
+  const auto held = split_along(plane, line, {&kept, 1});
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->interpolated(plane.V).row(v), plane.V.row(v));
 }
 
 TEST(SplitAlong, WhatRunsAlongTwoSidesOfATriangleTakesTheThird) {
