@@ -30,8 +30,6 @@ struct SuggestedSeam {
   /// suggestions before.
   std::vector<SurfacePath> cut;
   CutLines lines;
-  double price =
-      0;  ///< for the cut being one more, turning, and lying to one side; the less, the better
   /// What opens the rings that there are then, so that all can be laid flat, in the numbers after
   /// this cut; one set after the other. The next suggestion does without.
   std::vector<std::vector<SurfacePath>> openings;

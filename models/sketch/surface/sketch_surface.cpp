@@ -175,19 +175,25 @@ StrokePath traced_path(SketchSurface& s, const Drawing& drawing, int view, Strok
   return path;
 }
 
-/// Places of vertices that were added on edges of the hull: on a silhouette where both ends are.
-void place_new_vertices(SketchSurface& s) {
-  const Eigen::MatrixX3d& V = s.hull.mesh.V;
+/// The place of a vertex that was put on an edge of the hull: on a silhouette where both ends are.
+void place_vertex(SketchSurface& s, int v) {
   for (std::size_t view = 0; view < s.hull.views.size(); ++view) {
-    auto& places = s.hull.places[view];
-    for (Eigen::Index v = places.size(); v < V.rows(); ++v) {
-      const Outline::Nearest nearest =
-          s.hull.views[view].outline.nearest(s.hull.views[view].project(V.row(v).transpose()));
-      places.emplace_back();
-      if (std::abs(nearest.distance) < 0.05 * s.hull.spacing)
-        places.back() = SilhouettePlace{nearest.arc_length, nearest.normal};
-    }
+    const OutlinedView& seen = s.hull.views[view];
+    const Outline::Nearest nearest =
+        seen.outline.nearest(seen.project(s.hull.mesh.V.row(v).transpose()));
+    std::optional<SilhouettePlace>& place = s.hull.places[view][v];
+    place.reset();
+    if (std::abs(nearest.distance) < 0.05 * s.hull.spacing)
+      place = SilhouettePlace{nearest.arc_length, nearest.normal};
   }
+}
+
+void place_new_vertices(SketchSurface& s) {
+  if (s.hull.places.empty()) return;
+  const int count = s.hull.mesh.vertex_count();
+  const int first_new = static_cast<int>(s.hull.places.front().size());
+  for (auto& places : s.hull.places) places.resize(count);
+  for (int v = first_new; v < count; ++v) place_vertex(s, v);
 }
 
 /// Gives the two sides of a path vertices of their own.
@@ -302,8 +308,10 @@ void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
   seam.view = seam.number = -1;
   for (const std::vector<SurfacePath>& paths : cuts) {
     std::vector<Edge> kept = seam.edges;
-    for (const StrokePath& path : surface.seams)
-      kept.insert(kept.end(), path.edges.begin(), path.edges.end());
+    for (const auto* paths_so_far : {&surface.seams, &surface.folds}) {
+      for (const StrokePath& path : *paths_so_far)
+        kept.insert(kept.end(), path.edges.begin(), path.edges.end());
+    }
     const std::optional<SurfaceSplit> split = split_along(surface.hull.mesh, paths, kept);
     if (!split) throw Error("cannot be cut into the triangles of the surface", "seam '" + id + "'");
     const int first_new = surface.hull.mesh.vertex_count();
@@ -313,11 +321,12 @@ void add_seam(SketchSurface& surface, Eigen::MatrixX3d& X,
     surface.hull.mesh.V = split->interpolated(surface.hull.mesh.V);
     X = split->interpolated(X);
     surface.hull.mesh.F = split->triangles;
+    place_new_vertices(surface);
+    for (const auto& [v, crossing] : split->moved) place_vertex(surface, v);
     seam.edges.insert(seam.edges.end(), split->path.begin(), split->path.end());
   }
   std::sort(seam.edges.begin(), seam.edges.end());
   surface.seams.push_back(std::move(seam));
-  place_new_vertices(surface);
   assign_borders(surface);
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,12 +14,16 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Share of its area below which a triangle is spoiled by vertices that moved.
+constexpr double kSpoiled = 0.05;
+
 class PathSplitter {
  public:
   PathSplitter(const TriMesh& mesh, std::span<const Edge> kept)
       : mesh_(mesh),
         edges_(mesh.F),
         stays_(boundary_vertices(mesh.F, mesh.vertex_count())),
+        stands_in_(mesh.vertex_count(), false),
         node_(edges_.edge_count(), -1) {
     for (const Edge& e : kept) stays_[e[0]] = stays_[e[1]] = true;
   }
@@ -30,17 +35,39 @@ class PathSplitter {
     for (const Edge& e : wanted_) {
       if (!made.find(e[0], e[1])) return {};
     }
+    move_vertices();
     straighten(made);
     for (const std::vector<int>& line : lines_) add_edges(line);
-    for (const auto& [v, crossing] : nearest_) split_.moved.emplace_back(v, crossing.second);
     return std::move(split_);
   }
 
  private:
-  int node_of(const EdgePoint& point) {
-    if (point.is_vertex()) return point.edge[0];
-    if (point.share < kSnapShare) return moved_onto(point, point.edge[0], point.share);
-    if (point.share > 1 - kSnapShare) return moved_onto(point, point.edge[1], 1 - point.share);
+  /// The vertices of a path that stand in for its points; -1: a new vertex.
+  [[nodiscard]] std::vector<int> stand_ins(const SurfacePath& path) const {
+    std::vector<int> of;
+    for (const EdgePoint& point : path) {
+      const bool first = point.is_vertex() || point.share < kSnapShare;
+      of.push_back(first ? point.edge[0] : point.share > 1 - kSnapShare ? point.edge[1] : -1);
+    }
+    // Before and behind a vertex that goes onto the path, a new one on an edge of it would lie in
+    // a line with it and with what the path comes from, unless that is on the opposite edge.
+    const auto has = [](const Edge& e, int v) { return e[0] == v || e[1] == v; };
+    const auto merge = [&](std::size_t from, std::size_t at, std::size_t to) {
+      const int v = of[to];
+      if (v < 0 || of[at] >= 0 || !has(path[at].edge, v)) return false;
+      if (of[from] == v || (of[from] < 0 && !has(path[from].edge, v))) return false;
+      of[at] = v;
+      return true;
+    };
+    for (bool merged = true; merged;) {
+      merged = false;
+      for (std::size_t i = 1; i + 1 < path.size(); ++i)
+        merged = merge(i - 1, i, i + 1) || merge(i + 1, i, i - 1) || merged;
+    }
+    return of;
+  }
+
+  int new_vertex(const EdgePoint& point) {
     int& node = node_[*edges_.find(point.edge[0], point.edge[1])];
     if (node < 0) {
       node = mesh_.vertex_count() + static_cast<int>(split_.added.size());
@@ -49,22 +76,50 @@ class PathSplitter {
     return node;
   }
 
-  /// The vertex, which goes to the nearest of its crossings unless it lies on the border.
-  int moved_onto(const EdgePoint& point, int v, double share) {
-    if (stays_[v]) return v;
-    const auto [at, is_new] = nearest_.try_emplace(v, share, point);
-    if (!is_new && share < at->second.first) at->second = {share, point};
-    return v;
+  /// A vertex goes to the nearest of the crossings that it stands in for, unless a path passes it.
+  void stand_in(const EdgePoint& point, int v) {
+    stands_in_[v] = true;
+    if (point.is_vertex()) {
+      stays_[v] = true;
+      return;
+    }
+    const double distance = (point.position(mesh_.V) - mesh_.V.row(v)).norm();
+    const auto [at, is_new] = nearest_.try_emplace(v, distance, point);
+    if (!is_new && distance < at->second.first) at->second = {distance, point};
   }
 
   void add_nodes(const SurfacePath& path) {
+    const std::vector<int> vertices = stand_ins(path);
     std::vector<int>& line = lines_.emplace_back();
-    for (const EdgePoint& point : path) {
-      const int node = node_of(point);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (vertices[i] >= 0) stand_in(path[i], vertices[i]);
+      const int node = vertices[i] >= 0 ? vertices[i] : new_vertex(path[i]);
       if (!line.empty() && node == line.back()) continue;
       if (!line.empty()) wanted_.insert(undirected(line.back(), node));
       line.push_back(node);
     }
+  }
+
+  /// Those that may, and that spoil no triangle.
+  void move_vertices() {
+    std::erase_if(nearest_, [&](const auto& move) { return stays_[move.first]; });
+    const Eigen::MatrixX3d before = split_.interpolated(mesh_.V);
+    for (bool spoiled = true; spoiled;) {
+      spoiled = false;
+      split_.moved.clear();
+      for (const auto& [v, crossing] : nearest_) split_.moved.emplace_back(v, crossing.second);
+      const Eigen::MatrixX3d V = split_.interpolated(mesh_.V);
+      for (Eigen::Index t = 0; t < split_.triangles.rows(); ++t) {
+        const Eigen::RowVector3i F = split_.triangles.row(t);
+        const Eigen::RowVector3d was = twice_area(before, F);
+        if (twice_area(V, F).dot(was) >= kSpoiled * was.squaredNorm()) continue;
+        for (int k = 0; k < 3; ++k) spoiled = nearest_.erase(F(k)) > 0 || spoiled;
+      }
+    }
+  }
+
+  static Eigen::RowVector3d twice_area(const Eigen::MatrixX3d& V, const Eigen::RowVector3i& F) {
+    return (V.row(F(1)) - V.row(F(0))).cross(V.row(F(2)) - V.row(F(0)));
   }
 
   void add_edges(const std::vector<int>& line) {
@@ -129,7 +184,11 @@ class PathSplitter {
       const int k = at[0] < 0 ? 0 : at[1] < 0 ? 1 : 2;
       const int b = at[(k + 1) % 3], c = at[(k + 2) % 3];
       made.push_back({b, corner(k + 2), c});
-      if (wanted_.contains(undirected(corner(k + 1), c))) {
+      // Not across a corner that goes onto the path, where there is a choice.
+      const bool other = wanted_.contains(undirected(corner(k + 1), c)) ||
+                         (stands_in_[corner(k)] && !stands_in_[corner(k + 1)] &&
+                          !wanted_.contains(undirected(corner(k), b)));
+      if (other) {
         made.push_back({corner(k), corner(k + 1), c});
         made.push_back({corner(k + 1), b, c});
       } else {
@@ -145,7 +204,8 @@ class PathSplitter {
 
   const TriMesh& mesh_;
   EdgeConnectivity edges_;
-  std::vector<bool> stays_;
+  std::vector<bool> stays_;      ///< vertices of the border and of kept edges, and that paths pass
+  std::vector<bool> stands_in_;  ///< vertices that paths run through
   std::map<int, std::pair<double, EdgePoint>> nearest_;  ///< crossings that a vertex stands in for
   std::vector<int> node_;                                ///< new vertex of each edge, -1: none
   std::vector<std::vector<int>> lines_;                  ///< vertices along the paths

@@ -30,13 +30,15 @@ struct SurfaceSplit {
 
 /// Splits triangles where paths cross them. Where a path passes nearer to a vertex than a sixth of
 /// the edge, the vertex stands in for the crossing, since slivers would spoil what is solved on the
-/// surface, and moves there, unless it lies on the border or on an edge that is kept: else every
-/// path would be as rough as the mesh. An edge is split once: a second path joins the first one
-/// there. Where a path would run along two sides of a triangle by a vertex it takes the third:
-/// nothing could make it straight otherwise.
+/// surface, and moves there: else every path would be as rough as the mesh. It stays where it lies
+/// on the border or on an edge that is kept, where a path runs through it, and where a triangle
+/// would lose nearly all of its area. So that they do not, what a path crosses right before and
+/// behind such a vertex on edges of its own is left to it too. An edge is split once: a second path
+/// joins the first one there. Where a path would run along two sides of a triangle by a vertex it
+/// takes the third: nothing could make it straight otherwise.
 ///
 /// New vertices are numbered along the paths, so that equal paths over two meshes of different
-/// numbering split them alike.
+/// numbering split them alike; triangles do not depend on what is kept.
 /// @param kept  edges whose vertices stay where they are
 /// @return  nothing when paths cross each other inside a triangle
 std::optional<SurfaceSplit> split_along(const TriMesh& mesh, std::span<const SurfacePath> paths,

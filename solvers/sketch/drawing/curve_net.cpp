@@ -186,13 +186,18 @@ double distance_to_stroke(const Eigen::Vector2d& p, const Stroke& stroke) {
   return nearest;
 }
 
-/// Whether every point of an occlusion lies along a border.
+/// Whether an occlusion runs along borders; a hand trembles, and single points stray.
 bool marks_border(const View& view, const Stroke& occlusion, double reach) {
-  return std::all_of(occlusion.points.begin(), occlusion.points.end(), [&](const auto& p) {
-    return std::any_of(view.strokes.begin(), view.strokes.end(), [&](const Stroke& border) {
-      return border.kind == StrokeKind::border && distance_to_stroke(p, border) <= reach;
-    });
-  });
+  double sum = 0;
+  for (const Eigen::Vector2d& p : occlusion.points) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Stroke& border : view.strokes) {
+      if (border.kind == StrokeKind::border)
+        nearest = std::min(nearest, distance_to_stroke(p, border));
+    }
+    sum += nearest * nearest;
+  }
+  return sum <= reach * reach * static_cast<double>(occlusion.points.size());
 }
 
 double drawn_diagonal(const View& view) {
@@ -262,6 +267,15 @@ bool holds(const SketchCurve& curve, int node) {
   return std::find(curve.nodes.begin(), curve.nodes.end(), node) != curve.nodes.end();
 }
 
+/// Whether two borders can meet on the object: they bound a panel in common, or one names none.
+bool may_meet(const SketchCurve& a, const SketchCurve& b) {
+  const auto bounds_too = [&](const std::string& panel) {
+    return std::find(b.panels.begin(), b.panels.end(), panel) != b.panels.end();
+  };
+  return a.panels.empty() || b.panels.empty() ||
+         std::any_of(a.panels.begin(), a.panels.end(), bounds_too);
+}
+
 /// Joins free ends that touch the inside of another curve to its nearest node.
 void weld_touching_ends(CurveNet& net) {
   for (int c = 0; c < std::ssize(net.curves); ++c) {
@@ -271,7 +285,12 @@ void weld_touching_ends(CurveNet& net) {
       int users = 0;
       for (const SketchCurve& curve : net.curves) users += holds(curve, end) ? 1 : 0;
       if (users > 1) continue;
-      const NearestOnNet near = nearest_on_net(net, net.points[end], net.snap, c);
+      NearestOnNet near{{}, net.snap};
+      for (int other = 0; other < std::ssize(net.curves); ++other) {
+        if (other == c || !may_meet(net.curves[c], net.curves[other])) continue;
+        const NearestOnNet place = nearest_on_curve(net, other, net.points[end]);
+        if (place.distance < near.distance) near = place;
+      }
       if (near.place.curve < 0) continue;
       const SketchCurve& other = net.curves[near.place.curve];
       end = node_of(other, static_cast<int>(std::lround(near.place.at)));
@@ -408,17 +427,6 @@ NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vecto
     const double t = nearest_on_chord(point, a, b);
     const double distance = ((1 - t) * a + t * b - point).norm();
     if (distance < best.distance) best = {{curve, i + t}, distance};
-  }
-  return best;
-}
-
-NearestOnNet nearest_on_net(const CurveNet& net, const Eigen::Vector2d& point, double reach,
-                            int skip_curve) {
-  NearestOnNet best{{}, reach};
-  for (int c = 0; c < std::ssize(net.curves); ++c) {
-    if (c == skip_curve) continue;
-    const NearestOnNet near = nearest_on_curve(net, c, point);
-    if (near.distance < best.distance) best = near;
   }
   return best;
 }

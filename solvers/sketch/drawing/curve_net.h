@@ -51,9 +51,10 @@ struct CurveNet {
 /// Borders and occlusions of a view as curves: strokes are cut at corners (a vertex that turns by
 /// more than `corner_deg` between two chords of more than three spacings each), ends that lie
 /// within `snap` of each other become one node, an end within `snap` of the inside of another curve
-/// becomes that curve's nearest node, and a stroke whose two ends meet each other only, without a
-/// corner, is closed. An occlusion that runs along a border all the way (within `snap`) marks the
-/// part of it that something hides; another one is a border that is hidden whole.
+/// becomes that curve's nearest node unless they name panels and have none in common (one merely
+/// covers the other then), and a stroke whose two ends meet each other only, without a
+/// corner, is closed. An occlusion that runs along a border (to `snap`, root mean
+/// square) marks the part of it that something hides; another one is a border that is hidden whole.
 ///
 /// @throws Error  when no border is drawn, or a stroke has no length (names it)
 CurveNet build_curve_net(const View& view, const CurveNetOptions& options);
@@ -95,8 +96,5 @@ struct NearestOnNet {
 };
 /// Nearest place on one border.
 NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vector2d& point);
-/// Nearest place on any border but `skip_curve`, or none within `reach` (m). Ties: the first curve.
-NearestOnNet nearest_on_net(const CurveNet& net, const Eigen::Vector2d& point, double reach,
-                            int skip_curve = -1);
 
 }  // namespace geoprior::sketch

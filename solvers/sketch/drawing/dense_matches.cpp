@@ -11,6 +11,9 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Of the length of all pairs: by which they miss the direction of the normal at most.
+constexpr double kMostMiss = 0.04;
+
 /// A drawn pair as places on two borders.
 struct PairAnchor {
   double first = 0;
@@ -18,8 +21,8 @@ struct PairAnchor {
   int pair = -1;
 };
 
-/// Stretch of the first border, from `begin` up to `end`, and its image from `image_begin` to
-/// `image_end`, which may run down; numbers of closed borders go on past the last node.
+/// Stretch of the first border from `begin` to `end`, and its image from `image_begin` to
+/// `image_end`; either may run down. Numbers of closed borders go on past the last node.
 struct MatchedStretch {
   double begin = 0;
   double end = 0;
@@ -64,6 +67,10 @@ class StretchMatcher {
   double least_slope_;
 };
 
+int next_node(double at, int step) {
+  return static_cast<int>(step > 0 ? std::floor(at) + 1 : std::ceil(at) - 1);
+}
+
 /// First place after `from`, on the way to `to`, where u passes the value in the given sense.
 std::optional<double> StretchMatcher::next_crossing(int curve, double from, double to, double u,
                                                     bool rising) const {
@@ -87,9 +94,10 @@ std::optional<double> StretchMatcher::next_crossing(int curve, double from, doub
 void StretchMatcher::match(int first, int second, const MatchedStretch& stretch,
                            std::vector<DenseMatch>& matches) const {
   const double way = stretch.image_end >= stretch.image_begin ? 1 : -1;
+  const int step = stretch.end >= stretch.begin ? 1 : -1;
   double from = stretch.image_begin;
-  for (int i = static_cast<int>(std::floor(stretch.begin)) + 1; i < stretch.end; ++i) {
-    const double rise = slope(first, i);
+  for (int i = next_node(stretch.begin, step); step * (stretch.end - i) > 0; i += step) {
+    const double rise = step * slope(first, i);
     if (std::abs(rise) < least_slope_) continue;
     const double u = u_at(first, i);
     const auto place = next_crossing(second, from, stretch.image_end, u, rise > 0);
@@ -150,6 +158,17 @@ std::vector<MatchedStretch> stretches_between(const std::vector<PairAnchor>& anc
   return stretches;
 }
 
+/// From the outermost anchors of open borders to their ends.
+std::vector<MatchedStretch> stretches_beyond(const std::vector<PairAnchor>& anchors,
+                                             const SketchCurve& first, const SketchCurve& second) {
+  if (first.closed || second.closed) return {};
+  const PairAnchor &low = anchors.front(), &high = anchors.back();
+  const double last = second.size() - 1;
+  const bool falls = anchors.size() == 1 || high.second < low.second;
+  return {{low.first, 0, low.second, falls ? last : 0},
+          {high.first, static_cast<double>(first.size() - 1), high.second, falls ? 0 : last}};
+}
+
 /// Total way of the images: more than once around says that pairs cross.
 void require_order(const std::vector<PairAnchor>& anchors,
                    const std::vector<MatchedStretch>& stretches, const SketchCurve& first,
@@ -171,17 +190,31 @@ void require_order(const std::vector<PairAnchor>& anchors,
   }
 }
 
+/// Whether the drawn pairs run along the plane's normal, so that u can be trusted far from them.
+bool agrees_with(const MirrorPlane& plane, const std::vector<SymmetricPair>& pairs) {
+  double miss = 0, length = 0;
+  for (const SymmetricPair& pair : pairs) {
+    miss += std::abs(across_pairs(plane).dot(pair.image - pair.point));
+    length += (pair.image - pair.point).norm();
+  }
+  return miss <= kMostMiss * length;
+}
+
 }  // namespace
 
 std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<SymmetricPair>& pairs,
                                       const MirrorPlane& plane, int half_width, double steep_deg) {
   const StretchMatcher matcher(net, plane, half_width, steep_deg);
   std::vector<DenseMatch> matches;
+  const bool goes_on = agrees_with(plane, pairs);
   const int count = static_cast<int>(net.curves.size());
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b < count; ++b) {
       const std::vector<PairAnchor> anchors = anchors_on(pairs, a, b);
-      if (anchors.size() < 2) continue;
+      // One point of the plane tells how a border is its own image.
+      const bool is_own_image =
+          goes_on && a == b && anchors.size() == 1 && pairs[anchors[0].pair].in_plane;
+      if (anchors.size() < 2 && !is_own_image) continue;
       const SketchCurve& first = net.curves[a];
       const SketchCurve& second = net.curves[b];
       std::vector<MatchedStretch> stretches = stretches_between(anchors, first, second, -1);
@@ -193,6 +226,10 @@ std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<Sym
         if (up < down) stretches = other;
       }
       require_order(anchors, stretches, first, second, pairs);
+      if (goes_on) {
+        for (const MatchedStretch& s : stretches_beyond(anchors, first, second))
+          stretches.push_back(s);
+      }
       for (const MatchedStretch& s : stretches) matcher.match(a, b, s, matches);
     }
   }

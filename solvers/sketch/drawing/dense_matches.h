@@ -18,9 +18,12 @@ struct DenseMatch {
 /// In the picture all pairs are parallel to n_xy, so that a point and its image have the same
 /// coordinate u across n_xy. Between two neighbouring pairs on the same two borders, each node of
 /// the first border goes to the place with the same u on the second, with u running the same way,
-/// in monotone order; a closed border that is its own image has pairs in both senses. Nodes where
-/// the border runs within `steep_deg` of n_xy are left out: u is stationary there and noise decides
-/// the place. Nothing is matched beyond the outermost pairs of an open border.
+/// in monotone order; a closed border that is its own image has pairs in both senses. Beyond the
+/// outermost pairs of open borders matches go on to where one of the two ends: the image of what
+/// hangs together hangs together. So does what goes both ways from a single point of the plane on a
+/// border that is its own image; neither where the pairs miss the normal's direction by more than
+/// 4 % of their length, since u is wrong then. Nodes where the border runs within `steep_deg` of
+/// n_xy are left out: u is stationary there and noise decides the place.
 ///
 /// @param half_width  nodes on either side for tangents
 /// @throws Error      when the order of pairs along the two borders differs (names two pairs)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/angles.h"
@@ -15,13 +16,20 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Points of a line that is faired, where its noise is not known and where it is.
 constexpr std::size_t kLeastPoints = 12;
+constexpr std::size_t kLeastOfKnownNoise = 6;
 /// Chord that nineteen of twenty are shorter than, over the median.
 constexpr double kUneven = 3.5;
 /// Of the borders' diagonal: below it nothing trembles.
 constexpr double kLeastTremor = 2e-4;
+/// A corner turns by more between two chords of so many points, and of so many deviations of the
+/// noise.
 constexpr double kFairCorner = 60 * kDegree;
-constexpr int kCornerPoints = 5;
+constexpr std::size_t kCornerPoints = 5;
+constexpr double kCornerNoise = 8;
+/// Deviations of a turn that noise may have added.
+constexpr double kSureTurn = 1.5;
 
 using LineMatrix = Eigen::SparseMatrix<double>;
 
@@ -53,15 +61,30 @@ bool is_even(const std::vector<Eigen::Vector2d>& points, bool closed) {
   return chords[chords.size() * 19 / 20] <= kUneven * chords[chords.size() / 2];
 }
 
+/// How much a line turns at a point, between the shortest chords that tell, less what noise makes
+/// of them; 0 near its ends.
+double sure_turn_at(const std::vector<Eigen::Vector2d>& points, std::size_t i, double noise) {
+  const auto chord = [&](bool back) -> std::optional<Eigen::Vector2d> {
+    for (std::size_t k = kCornerPoints; back ? k <= i : i + k < points.size(); ++k) {
+      const Eigen::Vector2d d = back ? points[i] - points[i - k] : points[i + k] - points[i];
+      if (d.norm() >= kCornerNoise * noise) return d;
+    }
+    return {};
+  };
+  const std::optional<Eigen::Vector2d> in = chord(true), out = chord(false);
+  if (!in || !out) return 0;
+  const double spread = std::sqrt(6.0) * noise / std::min(in->norm(), out->norm());
+  return std::abs(signed_angle(*in, *out)) - kSureTurn * spread;
+}
+
 /// Numbers of points between which a line has no corner, first and last of them included.
-std::vector<std::size_t> smooth_parts(const std::vector<Eigen::Vector2d>& points) {
+std::vector<std::size_t> smooth_parts(const std::vector<Eigen::Vector2d>& points, double noise) {
   const std::size_t n = points.size();
   std::vector<std::size_t> cuts{0};
   double sharpest = 0;
   std::size_t corner = 0;
   for (std::size_t i = kCornerPoints; i + kCornerPoints < n; ++i) {
-    const double turn = std::abs(
-        signed_angle(points[i] - points[i - kCornerPoints], points[i + kCornerPoints] - points[i]));
+    const double turn = sure_turn_at(points, i, noise);
     if (turn > kFairCorner && turn > sharpest) {
       sharpest = turn;
       corner = i;
@@ -172,7 +195,8 @@ class SmoothedLine {
 FairedLine fair_line(const std::vector<Eigen::Vector2d>& points, bool closed,
                      std::array<bool, 2> hold, double least, double noise) {
   FairedLine faired{points, 0, 0};
-  if (points.size() < kLeastPoints || !is_even(points, closed)) return faired;
+  if (points.size() < (noise > 0 ? kLeastOfKnownNoise : kLeastPoints)) return faired;
+  if (!is_even(points, closed)) return faired;
   SmoothedLine line(points, closed);
   faired.noise = line.tremor();
   if (faired.noise < least) return faired;
@@ -205,19 +229,22 @@ FairedView faired_borders(const View& view, double snap) {
              return (other - end).norm() <= snap * diagonal;
            }) > 1;
   };
-  std::vector<BorderPart> parts;
-  for (std::size_t b = 0; b < view.strokes.size(); ++b) {
-    const Stroke& stroke = view.strokes[b];
-    if (stroke.kind != StrokeKind::border || stroke.points.size() < kLeastPoints) continue;
-    const std::vector<std::size_t> cuts = smooth_parts(stroke.points);
-    const bool whole = cuts.size() == 2;
-    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-      parts.push_back(
-          {b, cuts[k], cuts[k + 1], whole && stroke.closed,
-           whole ? std::array<bool, 2>{meets(stroke.points.front()), meets(stroke.points.back())}
-                 : std::array<bool, 2>{true, true}});
+  const auto parts_of = [&](double noise) {
+    std::vector<BorderPart> parts;
+    for (std::size_t b = 0; b < view.strokes.size(); ++b) {
+      const Stroke& stroke = view.strokes[b];
+      const std::size_t least = noise > 0 ? kLeastOfKnownNoise : kLeastPoints;
+      if (stroke.kind != StrokeKind::border || stroke.points.size() < least) continue;
+      const std::vector<std::size_t> cuts = smooth_parts(stroke.points, noise);
+      const bool whole = cuts.size() == 2;
+      const std::array<bool, 2> met{meets(stroke.points.front()), meets(stroke.points.back())};
+      for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        parts.push_back({b, cuts[k], cuts[k + 1], whole && stroke.closed,
+                         whole ? met : std::array<bool, 2>{true, true}});
+      }
     }
-  }
+    return parts;
+  };
   const auto fair = [&](const BorderPart& part, double noise) {
     const std::vector<Eigen::Vector2d>& points = view.strokes[part.stroke].points;
     return fair_line({points.begin() + static_cast<std::ptrdiff_t>(part.begin),
@@ -226,13 +253,13 @@ FairedView faired_borders(const View& view, double snap) {
   };
   double square = 0;
   int freedom = 0;
-  for (const BorderPart& part : parts) {
+  for (const BorderPart& part : parts_of(0)) {
     const FairedLine line = fair(part, 0);
     square += line.freedom * line.noise * line.noise;
     freedom += line.freedom;
   }
   FairedView faired{view, freedom > 0 ? std::sqrt(square / freedom) : 0, diagonal};
-  for (const BorderPart& part : parts) {
+  for (const BorderPart& part : parts_of(faired.noise)) {
     const FairedLine line = fair(part, faired.noise);
     std::copy(
         line.points.begin(), line.points.end(),

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -38,6 +39,8 @@ constexpr double kCopyEvidence = 0.005;
 constexpr double kSnapNoise = 3;
 constexpr double kMarkNoise = 5;
 constexpr double kCopyNoise = 2;
+/// Between whose ends lies less is noise, where more is seen of the border.
+constexpr double kCrumbNoise = 4;
 /// What must be seen of a rim that goes round: five ninths of its ellipse, or 130 degrees of it
 /// between silhouettes of its own panel.
 constexpr double kRimSpan = 200 * kDegree;
@@ -82,6 +85,7 @@ class BorderCompletion {
  private:
   void find_covered_ends();
   void join_stretches();
+  void drop_crumbs();
   bool join_one();
   void find_rulings();
   void complete_all();
@@ -147,11 +151,17 @@ double BorderCompletion::distance_to(const PartialBorder& border, const Eigen::V
 }
 
 /// Whether an end lies on a stroke of another border or on a silhouette, and meets no end of a
-/// border there.
+/// border of a panel of its own there.
 bool BorderCompletion::is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const {
   const double reach = kCoverReach * snap_;
+  const auto shares_panel = [&](const PartialBorder& other) {
+    return own.panels.empty() || other.panels.empty() ||
+           std::ranges::any_of(own.panels, [&](const std::string& panel) {
+             return std::ranges::find(other.panels, panel) != other.panels.end();
+           });
+  };
   for (const PartialBorder& other : borders_) {
-    if (&other == &own || other.closed) continue;
+    if (&other == &own || other.closed || !shares_panel(other)) continue;
     for (const Eigen::Vector2d& p : {other.stretches[0].front().p, other.stretches[0].back().p})
       if ((p - end).norm() <= snap_ && other.panels != own.panels) return false;
   }
@@ -222,6 +232,19 @@ bool BorderCompletion::join_one() {
 
 void BorderCompletion::join_stretches() {
   while (join_one()) {
+  }
+}
+
+/// Short stretches that noise leaves without a direction.
+void BorderCompletion::drop_crumbs() {
+  for (PartialBorder& border : borders_) {
+    const auto is_crumb = [&](const Stretch& stretch) {
+      return (stretch.back().p - stretch.front().p).norm() < kCrumbNoise * noise_;
+    };
+    if (border.stretches.size() < 2 || std::ranges::all_of(border.stretches, is_crumb)) continue;
+    if (is_crumb(border.stretches.front())) border.covered[0] = true;
+    if (is_crumb(border.stretches.back())) border.covered[1] = true;
+    std::erase_if(border.stretches, is_crumb);
   }
 }
 
@@ -366,24 +389,19 @@ bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) 
 }
 
 /// The copy of a border that is its own mirror image is so too, in the same plane: pairs of one are
-/// pairs of the other. Not beside those that are drawn on it.
+/// pairs of the other, where it has none.
 void BorderCompletion::copy_pairs(int whole, int copy, const ParallelCopy& map) {
+  const auto on = [&](int border) {
+    return [this, border](const Stroke& pair) { return lies_on(borders_[border], pair); };
+  };
+  if (std::any_of(pairs_.begin(), pairs_.end(), on(copy))) return;
   const Stroke& border = view_.strokes[borders_[copy].stroke];
   std::vector<Stroke> copies;
-  for (const Stroke& pair : pairs_) {
-    if (!lies_on(borders_[whole], pair)) continue;
-    Stroke image = pair;
-    image.id = border.id + "-" + pair.id;
-    image.panels = border.name;
-    for (Eigen::Vector2d& p : image.points) p = map(p);
-    const bool near = std::any_of(pairs_.begin(), pairs_.end(), [&](const Stroke& other) {
-      return lies_on(borders_[copy], other) &&
-             (nearest_place({other.points, false}, image.points.front()).distance <=
-                  kEndPart * diagonal_ ||
-              nearest_place({other.points, false}, image.points.back()).distance <=
-                  kEndPart * diagonal_);
-    });
-    if (!near) copies.push_back(std::move(image));
+  std::copy_if(pairs_.begin(), pairs_.end(), std::back_inserter(copies), on(whole));
+  for (Stroke& pair : copies) {
+    pair.id = border.id + "-" + pair.id;
+    pair.panels = border.name;
+    for (Eigen::Vector2d& p : pair.points) p = map(p);
   }
   pairs_.insert(pairs_.end(), copies.begin(), copies.end());
 }
@@ -642,6 +660,7 @@ void BorderCompletion::put_strokes(CompletedView& out) const {
 CompletedView BorderCompletion::complete() {
   find_covered_ends();
   join_stretches();
+  drop_crumbs();
   find_rulings();
   complete_all();
   CompletedView out;

@@ -74,20 +74,30 @@ NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
               "within " + std::to_string(reach) + " m of one");
 }
 
-/// Puts the ends onto the nearest borders, or both onto one that is about as near: where the images
-/// of two borders cross, a pair most likely belongs to one border that is its own mirror image.
+/// Puts the ends onto the nearest borders, or both onto one that fits about as well: where the
+/// images of two borders cross, a pair most likely belongs to one border that is its own mirror
+/// image. Not where the ends would come together: then it joins two borders that run beside each
+/// other.
 std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const std::vector<int>& borders,
-                                          const SymmetricPair& pair, const std::string& where) {
+                                          const SymmetricPair& pair, const MirrorPlane& plane,
+                                          const std::string& where) {
   const NearestOnNet point = border_of_end(net, borders, pair.point, where);
   const NearestOnNet image = border_of_end(net, borders, pair.image, where);
   std::array<CurvePoint, 2> best{point.place, image.place};
-  double least = point.distance + image.distance + net.snap;
   if (point.place.curve == image.place.curve) return best;
+  const auto between = [&](const NearestOnNet& a, const NearestOnNet& b) -> Eigen::Vector2d {
+    return evaluate(net, position_form(net, b.place)) - evaluate(net, position_form(net, a.place));
+  };
+  const auto misfit = [&](const NearestOnNet& a, const NearestOnNet& b) {
+    return a.distance + b.distance + std::abs(across_pairs(plane).dot(between(a, b)));
+  };
+  double least = misfit(point, image) + net.snap;
   for (const int c : borders) {
     const NearestOnNet a = nearest_on_curve(net, c, pair.point);
     const NearestOnNet b = nearest_on_curve(net, c, pair.image);
-    if (a.distance + b.distance >= least) continue;
-    least = a.distance + b.distance;
+    if (misfit(a, b) >= least || between(a, b).norm() < (pair.image - pair.point).norm() / 2)
+      continue;
+    least = misfit(a, b);
     best = {a.place, b.place};
   }
   return best;
@@ -137,7 +147,7 @@ SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net, const MirrorP
   SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
   pair.in_plane = (pair.image - pair.point).norm() <= net.snap / 4;
   const std::array<CurvePoint, 2> ends =
-      borders_of_ends(net, borders_for_pair(net, stroke), pair, where);
+      borders_of_ends(net, borders_for_pair(net, stroke), pair, plane, where);
   pair.point_at = all_places(net, ends[0]);
   pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
   if (noise > 0 && !pair.in_plane) {

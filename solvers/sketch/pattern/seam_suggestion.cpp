@@ -33,11 +33,11 @@ constexpr int kBranches = 4;             ///< further cuts that are tried of eac
 constexpr double kSameScore = 0.02;      ///< cuts nearer than this in error and length are the same
 constexpr double kSamePlan = 1e-3;       ///< plans nearer than this in price and share are the same
 constexpr double kCutPrice = 0.03;       ///< of a suggestion, in the logarithm of the error
-constexpr double kUnsoundPrice = 1;      ///< of parts that lie on each other, likewise
-constexpr double kMissingPrice = 5;      ///< of the area that `share` still lacks, over all of it
-constexpr double kTurningPrice = 0.005;  ///< of a radian that a cut turns by, likewise
+constexpr double kUnsoundPrice = 1;      ///< of parts that lie on each other, in the same
+constexpr double kMissingPrice = 5;      ///< of the whole area, of which `share` still lacks a part
+constexpr double kTurningPrice = 0.005;  ///< of a radian that a cut turns by
 constexpr double kNear = 0.03;  ///< of mirror images, in diagonals of the surface and in area
-constexpr double kLopsidedPrice = 0.02;  ///< of a cut beside the mirror plane of its piece
+constexpr double kLopsidedPrice = 0.02;  ///< of cuts that are not their own mirror image
 constexpr double kLeastStrain = 1e-4;    ///< mean |log stretch| that is as good as none
 constexpr double kLineWidth = 4;  ///< scale at which the lines of suggestions are fair (mean edges)
 
@@ -50,6 +50,7 @@ struct Plan {
   std::vector<std::string> keys;   ///< of the panels: `key_of`
   std::vector<CutTrial> measures;  ///< of the panels as they are
   FlatMeasure whole;               ///< of all of them
+  double seams = 0;                ///< what the suggestions cost beside their length
   double price = 0;                ///< the less, the better
 };
 
@@ -101,14 +102,18 @@ Eigen::RowVector3d middle_of(const CutLines& lines) {
   return sum / lines.length;
 }
 
-/// How much lines turn (rad).
+/// How much lines turn, closed ones where they close too (rad).
 double turning_of(const CutLines& lines) {
   double turning = 0;
+  const auto between = [](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  };
   for (const Eigen::MatrixX3d& x : lines.points) {
-    for (Eigen::Index k = 1; k + 1 < x.rows(); ++k) {
-      const Eigen::RowVector3d a = x.row(k) - x.row(k - 1), b = x.row(k + 1) - x.row(k);
-      turning += std::atan2(a.cross(b).norm(), a.dot(b));
-    }
+    const Eigen::Index last = x.rows() - 1;
+    for (Eigen::Index k = 1; k < last; ++k)
+      turning += between(x.row(k) - x.row(k - 1), x.row(k + 1) - x.row(k));
+    if (last > 1 && x.row(0) == x.row(last))
+      turning += between(x.row(last) - x.row(last - 1), x.row(1) - x.row(0));
   }
   return turning;
 }
@@ -193,18 +198,15 @@ void SuggestionSearch::measure(Plan& plan) {
   plan.measures.clear();
   for (const std::string& key : plan.keys) plan.measures.push_back(measures_.at(key));
   plan.whole = {};
-  double length = 0, seams = 0;
+  double length = 0;
   for (const CutTrial& m : plan.measures) {
     plan.whole.add(m.flat);
     length += m.opening_length;
   }
-  for (const SuggestedSeam& seam : plan.suggestions) {
-    length += seam.lines.length;
-    seams += seam.price;
-  }
+  for (const SuggestedSeam& seam : plan.suggestions) length += seam.lines.length;
   plan.price = std::log(std::max(plan.whole.strain / plan.whole.area, kLeastStrain)) +
                options_.length_weight * length / std::sqrt(whole_) +
-               options_.piece_weight * static_cast<double>(plan.panels.size()) + seams +
+               options_.piece_weight * static_cast<double>(plan.panels.size()) + plan.seams +
                kMissingPrice * std::max(0.0, options_.share - plan.whole.within / plan.whole.area) +
                (plan.whole.sound ? 0 : kUnsoundPrice);
 }
@@ -323,7 +325,7 @@ std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam su
       least = std::min(least, triangle_areas(piece.mesh.V, piece.mesh.F).sum());
     return least;
   };
-  Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, {}, 0};
+  Plan further{plan.work, plan.next_seam + 1, plan.suggestions, {}, {}, {}, {}, plan.seams, 0};
   if (!further.work.cut(suggestion.cut, plan.next_seam)) return {};
   if (most_pieces_ > 0 &&
       std::ssize(cut_surface(further.work.mesh, further.work.seams)) > most_pieces_) {
@@ -337,8 +339,8 @@ std::optional<Plan> SuggestionSearch::applied(const Plan& plan, SuggestedSeam su
   const bool crumbs =
       least_piece(opened) < std::min(least_piece(plan.work), options_.min_part * whole_);
   if (crumbs && options_.rule == SuggestionRule::measured) return {};
-  suggestion.price = kCutPrice + kTurningPrice * turning_of(suggestion.lines);
-  if (trial_.mirror && !is_centred(middle_of(suggestion.lines))) suggestion.price += kLopsidedPrice;
+  further.seams += kCutPrice + kTurningPrice * turning_of(suggestion.lines);
+  if (trial_.mirror && !is_centred(middle_of(suggestion.lines))) further.seams += kLopsidedPrice;
   if (options_.fair) {
     suggestion.lines = faired_lines(suggestion.lines, line_width_);
     suggestion.opening_lines = faired_lines(suggestion.opening_lines, line_width_);

@@ -37,16 +37,18 @@ void describe(OptionVisitor& v, SeamSuggestionOptions& options);
 /// Of the piece whose pattern is strained most, every candidate (`cut_candidates`) is cut and its
 /// parts are laid flat (`try_cut`). The best few in
 ///
-///   (E - E') / E - length_weight * length / sqrt(area) - piece_weight * added pieces,
+///   (E - E') / E - length_weight * length / sqrt(area) - piece_weight * added pieces
+///     - 0.005 of a radian that it turns by - 0.02 of a cut beside the mirror plane of its piece
+///     + 1 where no part lies on another any more,
 ///
-/// E the integral of |log stretch| over the piece before, E' after the cut, both measured, are
-/// made, each in a plan of its own. When the surface is its own mirror image and the piece's image
-/// is another piece, that one is cut alike, in the same suggestion. Of all plans the `plans` with
-/// the least
+/// E the integral of |log stretch| over the piece before, E' after the cut, both measured and 1e-4
+/// of its area at least, are made, each in a plan of its own. When the surface is its own mirror
+/// image and the piece's image is another piece, that one is cut alike, in the same suggestion. Of
+/// all plans the `plans` with the least
 ///
 ///   log(mean |log stretch|) + length_weight * length / sqrt(area) + piece_weight * pieces
-///     + 0.03 suggestions + 0.005 of a radian that cuts turn by + 0.02 of a cut beside the mirror
-///     plane + 5 of what `share` lacks + 1 where parts lie on each other
+///     + 0.03 suggestions + 0.005 of a radian that cuts turn by + 0.02 of cuts that are not their
+///     own mirror image + 5 of what `share` lacks + 1 where parts lie on each other
 ///
 /// of the whole surface are followed further, of those that come to the same one, until one has the
 /// share of the area within the tolerance and no parts on each other, or none is better than the

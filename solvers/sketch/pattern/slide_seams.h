@@ -11,7 +11,7 @@ namespace geoprior::sketch {
 /// What a pattern may lose to fair seams.
 struct SlideLimits {
   double tolerance = 0.02;  ///< of stretch
-  double share = 0.95;      ///< of the area within it that is enough
+  double share = 0.98;      ///< of the area within it that is enough
 };
 
 /// Makes seams fair (`fair_seams`) where the pattern allows it: one after the other slides, and

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "metrics/developability/developability.h"
 #include "models/sketch/surface/split.h"
 #include "solvers/sketch/pattern/conformal_scale.h"
@@ -107,32 +108,78 @@ TEST(SplitAlong, KeepsTheAreaAndHasThePathAsEdges) {
   EXPECT_GT(split->added.size(), 3u);
 }
 
-// A slanted line over a grid: the path keeps to it where vertices stand in for crossings, too, but
-// for those that are kept.
+/// Of triangles in the plane z = 0, counter-clockwise ones positive.
+Eigen::VectorXd signed_areas(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
+  Eigen::VectorXd areas(F.rows());
+  for (Eigen::Index t = 0; t < F.rows(); ++t) {
+    const Eigen::RowVector3d a = V.row(F(t, 1)) - V.row(F(t, 0)),
+                             b = V.row(F(t, 2)) - V.row(F(t, 0));
+    areas(t) = a.cross(b).z() / 2;
+  }
+  return areas;
+}
+
+// Slanted lines over a grid and a jittered one: paths keep to them where vertices stand in for
+// crossings, too, and no triangle is turned over or loses all of its area.
 TEST(SplitAlong, VerticesThatStandInForCrossingsGoThere) {
+  for (const double jitter : {0.0, 0.025}) {
+    RandomStream random(1, "jittered grid");
+    const TriMesh plane = flats::grid(10, 10, [&](int i, int j) {
+      const bool inside = i > 0 && j > 0 && i < 10 && j < 10;
+      const double dx = inside ? jitter * (2 * random.uniform() - 1) : 0;
+      const double dy = inside ? jitter * (2 * random.uniform() - 1) : 0;
+      return Eigen::Vector3d(0.1 * i + dx, 0.1 * j + dy, 0);
+    });
+    const double least = 0.02 * signed_areas(plane.V, plane.F).mean();
+    int moved = 0, nodes = 0, off_line = 0;
+    for (int k = 0; k < 60; ++k) {
+      const double slope = -1 + 2.0 * k / 59, start = 0.13 + (slope < 0 ? 0.6 : 0.1);
+      const auto off = [&](const Eigen::RowVector3d& x) { return x.y() - (start + slope * x.x()); };
+      Eigen::VectorXd value(plane.vertex_count());
+      for (int v = 0; v < plane.vertex_count(); ++v) value(v) = off(plane.V.row(v));
+      const std::vector<SurfacePath> line = level_lines(plane, value, 0);
+      ASSERT_EQ(line.size(), 1u);
+      const auto split = split_along(plane, line);
+      ASSERT_TRUE(split) << "slope " << slope;
+      moved += static_cast<int>(split->moved.size());
+      const Eigen::MatrixX3d V = split->interpolated(plane.V);
+      const Eigen::VectorXd areas = signed_areas(V, split->triangles);
+      EXPECT_NEAR(areas.sum(), 1, 1e-12);
+      EXPECT_GT(areas.minCoeff(), least) << "slope " << slope;
+      for (const Edge& e : split->path) {
+        for (const int v : e) {
+          const bool is_end = v == line[0].front().edge[0] || v == line[0].back().edge[0];
+          ++nodes;
+          if (!is_end && std::abs(off(V.row(v))) > 1e-12) ++off_line;
+        }
+      }
+    }
+    EXPECT_GT(moved, 60);
+    EXPECT_LT(off_line, 0.02 * nodes);
+  }
+}
+
+TEST(SplitAlong, VerticesOfKeptEdgesAndOfOtherPathsStay) {
   const TriMesh plane =
       flats::grid(10, 10, [](int i, int j) { return Eigen::Vector3d(0.1 * i, 0.1 * j, 0); });
-  const auto off = [](const Eigen::RowVector3d& x) { return x.y() - (0.112 + 0.73 * x.x()); };
   Eigen::VectorXd value(plane.vertex_count());
-  for (int v = 0; v < plane.vertex_count(); ++v) value(v) = off(plane.V.row(v));
-  const std::vector<SurfacePath> line = level_lines(plane, value, 0);
-  ASSERT_EQ(line.size(), 1u);
-  const auto split = split_along(plane, line);
+  for (int v = 0; v < plane.vertex_count(); ++v)
+    value(v) = plane.V(v, 1) - (0.112 + 0.73 * plane.V(v, 0));
+  std::vector<SurfacePath> paths = level_lines(plane, value, 0);
+  const auto split = split_along(plane, paths);
   ASSERT_TRUE(split);
-  ASSERT_GT(split->moved.size(), 1u);
-  const Eigen::MatrixX3d V = split->interpolated(plane.V);
-  EXPECT_GT(triangle_areas(V, split->triangles).minCoeff(), 0);
-  for (const Edge& e : split->path) {
-    for (const int v : e) {
-      const bool is_end = v == line[0].front().edge[0] || v == line[0].back().edge[0];
-      EXPECT_NEAR(is_end ? 0 : off(V.row(v)), 0, 1e-12) << v;
-    }
-  }
+  ASSERT_FALSE(split->moved.empty());
   const int v = split->moved.front().first;
-  const Edge kept{v, split->moved.front().second.edge[split->moved.front().second.edge[0] == v]};
-  const auto held = split_along(plane, line, {&kept, 1});
+  const Edge& at = split->moved.front().second.edge;
+  const Edge kept{v, at[at[0] == v ? 1 : 0]};
+  const auto held = split_along(plane, paths, {&kept, 1});
   ASSERT_TRUE(held);
+  EXPECT_EQ(held->triangles, split->triangles);
   EXPECT_EQ(held->interpolated(plane.V).row(v), plane.V.row(v));
+  paths.push_back({at_vertex(at[0]), at_vertex(at[1])});
+  const auto passed = split_along(plane, paths);
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->interpolated(plane.V).row(v), plane.V.row(v));
 }
 
 TEST(SplitAlong, WhatRunsAlongTwoSidesOfATriangleTakesTheThird) {

@@ -64,28 +64,29 @@ void stretch_first_vector(View& view, double factor) {
   }
 }
 
-// Measured over twelve drawings with the linear system: 0.12, 0.06 and 0.71 % without noise.
+// By drawn pairs alone it is wrong by 12, 18 and 29 %.
 TEST(KnownDepth, IsRightForBagTentAndHelmet) {
-  for (const auto& [shape, bound] :
-       {std::pair{KnownShape::bag, 0.002}, {KnownShape::tent, 0.001}, {KnownShape::helmet, 0.01}}) {
+  for (const auto& [shape, bound] : {std::pair{KnownShape::bag, 0.001},
+                                     {KnownShape::tent, 0.001},
+                                     {KnownShape::helmet, 0.005}}) {
     const SyntheticView drawing = known_drawing_of(shape, 0, 1);
     EXPECT_LT(depth_share(drawing, reconstruct_one_view(drawing.view, linear_options())), bound);
-    OneViewOptions without = linear_options();
-    without.depth.developability = 0;
-    EXPECT_GT(depth_share(drawing, reconstruct_one_view(drawing.view, without)), 0.1);
+    OneViewOptions alone = linear_options();
+    alone.depth.developability = alone.depth.dense = alone.depth.copied_planes = 0;
+    EXPECT_GT(depth_share(drawing, reconstruct_one_view(drawing.view, alone)), 0.1);
   }
 }
 
-// Points off by 0.3 % of the height: 1.1 and 1.3 % linear, 0.5 and 0.6 % refined.
-TEST(RefineDepth, HalvesTheErrorOfNoisyDrawings) {
-  for (const KnownShape shape : {KnownShape::bag, KnownShape::tent}) {
+// The symmetry of whole borders leaves it a fifth to mend.
+TEST(RefineDepth, IsNoWorseOnNoisyDrawings) {
+  for (const KnownShape shape : {KnownShape::bag, KnownShape::tent, KnownShape::helmet}) {
     double linear = 0, refined = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const SyntheticView drawing = known_drawing_of(shape, 0.003, seed);
       linear += depth_share(drawing, reconstruct_one_view(drawing.view, linear_options()));
       refined += depth_share(drawing, reconstruct_one_view(drawing.view, refined_options()));
     }
-    EXPECT_LT(refined, 0.75 * linear);
+    EXPECT_LT(refined, linear);
   }
 }
 
