@@ -21,9 +21,9 @@ struct FairedLine {
 /// of a smooth curve are of the third order in the spacing: their median over 0.6745 sqrt(20) tells
 /// whether a line trembles. The faired points minimise
 ///   sum |x - y|^2 + lambda sum |third difference of x|^2,
-/// with the lambda that makes the drawn points most likely. Lines of fewer than twelve points, of
-/// uneven distances (one in twenty above 3.5 times the median), or that tremble by less than
-/// `least` are left as they are.
+/// with the lambda that makes the drawn points most likely. Lines of fewer than twelve points (six
+/// where the noise is known), of uneven distances (one in twenty above 3.5 times the median), or
+/// that tremble by less than `least` are left as they are.
 ///
 /// It cannot tell a tremor that neighbouring points share, and rounds corners: a line is to have
 /// none.
@@ -42,7 +42,8 @@ struct FairedView {
 
 /// The view with its borders faired, point for point: each line's noise is found, then all lines
 /// are faired for the noise that they have together. Ends that meet other borders stay, and so do
-/// corners (a turn of more than 60 degrees between the directions of five points on either side).
+/// corners: a turn of more than 60 degrees, and 1.5 deviations of what noise makes of it, between
+/// the shortest chords of five points and of eight deviations of the noise.
 /// @param snap  share of the diagonal of the borders within which ends meet
 FairedView faired_borders(const View& view, double snap);
 

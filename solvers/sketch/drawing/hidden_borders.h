@@ -46,12 +46,13 @@ struct CompletedView {
 /// one in which no border ends where another stroke covers it. Otherwise:
 ///
 /// 1. Stretches of one border are put together: of the same panels, and either named alike ("rim",
-///    "rim-2") or meeting smoothly.
+///    "rim-2") or meeting smoothly. Beside others, a stretch whose ends lie less than four
+///    deviations of the noise apart is left out.
 /// 2. What a border lacks comes from a whole border that a drawn ruling joins it to, as its
 ///    parallel copy (`ParallelCopy`: parts of cones and cylinders are bounded by parallel planes,
 ///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one. What
 ///    is seen of a rim that is smaller than its neighbour, and on the copy but for noise, is put
-///    there.
+///    there. Its pairs come along where none is drawn.
 /// 3. A rim whose ends are both covered, and which is seen for more than five ninths of an ellipse
 ///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen and
 ///    its mirror image.
