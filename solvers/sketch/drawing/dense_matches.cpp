@@ -40,6 +40,11 @@ class StretchMatcher {
 
   void match(int first, int second, const MatchedStretch& stretch,
              std::vector<DenseMatch>& matches) const;
+  /// Whether a border runs along the normal's image at a place, as one that is its own image does
+  /// where it passes through the plane.
+  [[nodiscard]] bool crosses_plane(int curve, double at) const {
+    return std::abs(slope(curve, static_cast<int>(std::lround(at)))) < least_slope_;
+  }
   /// Mean distance in u of proportional places: small for the right way round a closed border.
   [[nodiscard]] double mismatch(int first, int second, const MatchedStretch& stretch) const;
 
@@ -197,7 +202,7 @@ bool agrees_with(const MirrorPlane& plane, const std::vector<SymmetricPair>& pai
     miss += std::abs(across_pairs(plane).dot(pair.image - pair.point));
     length += (pair.image - pair.point).norm();
   }
-  return miss <= kMostMiss * length;
+  return length > 0 && miss <= kMostMiss * length;
 }
 
 }  // namespace
@@ -211,9 +216,10 @@ std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<Sym
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b < count; ++b) {
       const std::vector<PairAnchor> anchors = anchors_on(pairs, a, b);
-      // One point of the plane tells how a border is its own image.
-      const bool is_own_image =
-          goes_on && a == b && anchors.size() == 1 && pairs[anchors[0].pair].in_plane;
+      // One point of the plane tells how a border is its own image, unless it lies in the plane.
+      const bool is_own_image = goes_on && a == b && anchors.size() == 1 &&
+                                pairs[anchors[0].pair].in_plane &&
+                                matcher.crosses_plane(a, anchors[0].first);
       if (anchors.size() < 2 && !is_own_image) continue;
       const SketchCurve& first = net.curves[a];
       const SketchCurve& second = net.curves[b];

@@ -21,9 +21,10 @@ struct DenseMatch {
 /// in monotone order; a closed border that is its own image has pairs in both senses. Beyond the
 /// outermost pairs of open borders matches go on to where one of the two ends: the image of what
 /// hangs together hangs together. So does what goes both ways from a single point of the plane on a
-/// border that is its own image; neither where the pairs miss the normal's direction by more than
-/// 4 % of their length, since u is wrong then. Nodes where the border runs within `steep_deg` of
-/// n_xy are left out: u is stationary there and noise decides the place.
+/// border that is its own image (it runs along n_xy there); neither where the pairs miss the
+/// normal's direction by more than 4 % of their length, since u is wrong then. Nodes where the
+/// border runs within `steep_deg` of n_xy are left out: u is stationary there and noise decides the
+/// place.
 ///
 /// @param half_width  nodes on either side for tangents
 /// @throws Error      when the order of pairs along the two borders differs (names two pairs)

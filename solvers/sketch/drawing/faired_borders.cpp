@@ -61,39 +61,48 @@ bool is_even(const std::vector<Eigen::Vector2d>& points, bool closed) {
   return chords[chords.size() * 19 / 20] <= kUneven * chords[chords.size() / 2];
 }
 
-/// How much a line turns at a point, between the shortest chords that tell, less what noise makes
-/// of them; 0 near its ends.
-double sure_turn_at(const std::vector<Eigen::Vector2d>& points, std::size_t i, double noise) {
+/// How much a line turns at a point, less what noise makes of it; 0 near its ends.
+struct SureTurn {
+  double angle = 0;
+  std::size_t points = kCornerPoints;  ///< of the longer chord
+};
+
+/// Between the shortest chords that tell.
+SureTurn sure_turn_at(const std::vector<Eigen::Vector2d>& points, std::size_t i, double noise) {
+  SureTurn turn;
   const auto chord = [&](bool back) -> std::optional<Eigen::Vector2d> {
     for (std::size_t k = kCornerPoints; back ? k <= i : i + k < points.size(); ++k) {
       const Eigen::Vector2d d = back ? points[i] - points[i - k] : points[i + k] - points[i];
-      if (d.norm() >= kCornerNoise * noise) return d;
+      if (d.norm() < kCornerNoise * noise) continue;
+      turn.points = std::max(turn.points, k);
+      return d;
     }
     return {};
   };
   const std::optional<Eigen::Vector2d> in = chord(true), out = chord(false);
-  if (!in || !out) return 0;
+  if (!in || !out) return turn;
   const double spread = std::sqrt(6.0) * noise / std::min(in->norm(), out->norm());
-  return std::abs(signed_angle(*in, *out)) - kSureTurn * spread;
+  turn.angle = std::abs(signed_angle(*in, *out)) - kSureTurn * spread;
+  return turn;
 }
 
 /// Numbers of points between which a line has no corner, first and last of them included.
 std::vector<std::size_t> smooth_parts(const std::vector<Eigen::Vector2d>& points, double noise) {
   const std::size_t n = points.size();
   std::vector<std::size_t> cuts{0};
-  double sharpest = 0;
+  SureTurn sharpest;
   std::size_t corner = 0;
   for (std::size_t i = kCornerPoints; i + kCornerPoints < n; ++i) {
-    const double turn = sure_turn_at(points, i, noise);
-    if (turn > kFairCorner && turn > sharpest) {
+    const SureTurn turn = sure_turn_at(points, i, noise);
+    if (turn.angle > kFairCorner && turn.angle > sharpest.angle) {
       sharpest = turn;
       corner = i;
     }
-    // The sharpest of neighbours.
-    if (corner > 0 && i >= corner + kCornerPoints) {
+    // The sharpest of those whose chords pass it.
+    if (corner > 0 && i >= corner + sharpest.points) {
       cuts.push_back(corner);
       corner = 0;
-      sharpest = 0;
+      sharpest = {};
     }
   }
   if (corner > 0) cuts.push_back(corner);

@@ -235,16 +235,23 @@ void BorderCompletion::join_stretches() {
   }
 }
 
-/// Short stretches that noise leaves without a direction.
+/// Short stretches that noise leaves without a direction, unless they end a border.
 void BorderCompletion::drop_crumbs() {
   for (PartialBorder& border : borders_) {
     const auto is_crumb = [&](const Stretch& stretch) {
-      return (stretch.back().p - stretch.front().p).norm() < kCrumbNoise * noise_;
+      return std::ranges::all_of(stretch, [&](const BorderPoint& point) {
+        return (point.p - stretch.front().p).norm() < kCrumbNoise * noise_;
+      });
     };
-    if (border.stretches.size() < 2 || std::ranges::all_of(border.stretches, is_crumb)) continue;
-    if (is_crumb(border.stretches.front())) border.covered[0] = true;
-    if (is_crumb(border.stretches.back())) border.covered[1] = true;
-    std::erase_if(border.stretches, is_crumb);
+    std::vector<Stretch>& stretches = border.stretches;
+    if (stretches.size() < 2 || std::ranges::all_of(stretches, is_crumb)) continue;
+    std::vector<Stretch> kept;
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+      const bool ends_it =
+          (k == 0 && !border.covered[0]) || (k + 1 == stretches.size() && !border.covered[1]);
+      if (ends_it || !is_crumb(stretches[k])) kept.push_back(std::move(stretches[k]));
+    }
+    stretches = std::move(kept);
   }
 }
 

@@ -46,8 +46,8 @@ struct CompletedView {
 /// one in which no border ends where another stroke covers it. Otherwise:
 ///
 /// 1. Stretches of one border are put together: of the same panels, and either named alike ("rim",
-///    "rim-2") or meeting smoothly. Beside others, a stretch whose ends lie less than four
-///    deviations of the noise apart is left out.
+///    "rim-2") or meeting smoothly. Beside others, a stretch that reaches less far than four
+///    deviations of the noise is left out, unless the border really ends with it.
 /// 2. What a border lacks comes from a whole border that a drawn ruling joins it to, as its
 ///    parallel copy (`ParallelCopy`: parts of cones and cylinders are bounded by parallel planes,
 ///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one. What

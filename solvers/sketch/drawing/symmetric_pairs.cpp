@@ -61,9 +61,13 @@ std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
   return borders;
 }
 
+double reach_of_ends(const CurveNet& net) {
+  return std::max(kPairReach * net.snap, kPairHand * net.diagonal);
+}
+
 NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,
                            const Eigen::Vector2d& end, const std::string& where) {
-  const double reach = std::max(kPairReach * net.snap, kPairHand * net.diagonal);
+  const double reach = reach_of_ends(net);
   NearestOnNet best{{}, reach};
   for (const int c : borders) {
     const NearestOnNet near = nearest_on_curve(net, c, end);
@@ -95,6 +99,7 @@ std::array<CurvePoint, 2> borders_of_ends(const CurveNet& net, const std::vector
   for (const int c : borders) {
     const NearestOnNet a = nearest_on_curve(net, c, pair.point);
     const NearestOnNet b = nearest_on_curve(net, c, pair.image);
+    if (std::max(a.distance, b.distance) > reach_of_ends(net)) continue;
     if (misfit(a, b) >= least || between(a, b).norm() < (pair.image - pair.point).norm() / 2)
       continue;
     least = misfit(a, b);

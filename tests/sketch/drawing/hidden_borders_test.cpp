@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/angles.h"
+#include "core/geometry/planar.h"
 #include "core/random.h"
 #include "experiments/sketch/measures.h"
 #include "experiments/sketch/truth/known_drawing.h"
@@ -252,6 +253,47 @@ TEST(FairedBorders, ShareTheNoiseOfTheHand) {
   const FairedView faired = faired_borders(view, 0.01);
   EXPECT_NEAR(faired.noise, 0.01, 0.0015);
   EXPECT_EQ(faired.view.strokes[0].points.size(), 60u);
+}
+
+// Of an arc of nine points nothing would be known alone; a right angle of many points to the
+// deviation of the noise keeps its corner, which is one.
+TEST(FairedBorders, ShortLinesAndCornersAreToldFromTheNoiseOfAll) {
+  View view;
+  view.kind = ViewKind::photo;
+  const auto add = [&](const char* id, std::vector<Eigen::Vector2d> points) {
+    Stroke stroke;
+    stroke.id = id;
+    stroke.kind = StrokeKind::border;
+    stroke.points = std::move(points);
+    view.strokes.push_back(std::move(stroke));
+  };
+  add("long", trembling_arc(1, 90));
+  add("short", trembling_arc(2, 9));
+  std::vector<Eigen::Vector2d> bent;
+  RandomStream random(3, "tremor");
+  for (int k = -60; k <= 60; ++k) {
+    const double dx = 0.01 * random.normal(), dy = 0.01 * random.normal();
+    bent.emplace_back(3 + 0.005 * std::max(k, 0) + dx, 0.005 * std::max(-k, 0) + dy);
+  }
+  add("bent", bent);
+  const FairedView faired = faired_borders(view, 0.01);
+  EXPECT_NEAR(faired.noise, 0.01, 0.0015);
+  double drawn = 0, left = 0;
+  for (int k = 0; k < 9; ++k) {
+    const Eigen::Vector2d clean(std::cos(0.05 * k), std::sin(0.05 * k));
+    drawn += (view.strokes[1].points[k] - clean).squaredNorm();
+    left += (faired.view.strokes[1].points[k] - clean).squaredNorm();
+  }
+  EXPECT_LT(left, drawn);
+  int held = 0;
+  for (std::size_t k = 1; k + 1 < bent.size(); ++k)
+    held += faired.view.strokes[2].points[k] == bent[k] ? 1 : 0;
+  EXPECT_LE(held, 1);
+  const auto turned = [&](std::size_t k) {
+    const std::vector<Eigen::Vector2d>& p = faired.view.strokes[2].points;
+    return std::abs(signed_angle(p[k] - p[k - 20], p[k + 20] - p[k]));
+  };
+  EXPECT_GT(turned(60), 1.2);
 }
 
 OneViewResult rough_result(const SyntheticView& drawing) {

@@ -97,6 +97,7 @@ TEST(OneView, FrustumDepthHoldsUnderDrawingNoise) {
     drawn.noise = 0.003;
     drawn.seed = seed;
     EXPECT_LT(depth_error(drawn), 0.013) << "seed " << seed;
+    EXPECT_GT(depth_error(drawn, unmatched()), 1.2 * depth_error(drawn)) << "seed " << seed;
   }
 }
 
