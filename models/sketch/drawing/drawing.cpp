@@ -78,6 +78,12 @@ std::vector<std::string> panels_in(const std::string& text) {
   return names;
 }
 
+bool may_meet(const std::vector<std::string>& panels, const std::vector<std::string>& others) {
+  return panels.empty() || others.empty() ||
+         std::find_first_of(panels.begin(), panels.end(), others.begin(), others.end()) !=
+             panels.end();
+}
+
 std::vector<std::string> panels_of(const View& view) {
   std::vector<std::string> names;
   for (const Stroke* border : strokes_of(view, StrokeKind::border)) {

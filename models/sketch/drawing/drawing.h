@@ -60,6 +60,9 @@ std::vector<const Stroke*> strokes_of(const View& view, StrokeKind kind);
 
 /// Panels of a one-view drawing in a text: "roof + gable" are two.
 std::vector<std::string> panels_in(const std::string& text);
+/// Whether borders of these panels can meet on the object: they bound one in common, or one of them
+/// names none.
+bool may_meet(const std::vector<std::string>& panels, const std::vector<std::string>& others);
 /// Those of all borders, in the order in which they are first named.
 std::vector<std::string> panels_of(const View& view);
 

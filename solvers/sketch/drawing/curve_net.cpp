@@ -267,15 +267,6 @@ bool holds(const SketchCurve& curve, int node) {
   return std::find(curve.nodes.begin(), curve.nodes.end(), node) != curve.nodes.end();
 }
 
-/// Whether two borders can meet on the object: they bound a panel in common, or one names none.
-bool may_meet(const SketchCurve& a, const SketchCurve& b) {
-  const auto bounds_too = [&](const std::string& panel) {
-    return std::find(b.panels.begin(), b.panels.end(), panel) != b.panels.end();
-  };
-  return a.panels.empty() || b.panels.empty() ||
-         std::any_of(a.panels.begin(), a.panels.end(), bounds_too);
-}
-
 /// Joins free ends that touch the inside of another curve to its nearest node.
 void weld_touching_ends(CurveNet& net) {
   for (int c = 0; c < std::ssize(net.curves); ++c) {
@@ -287,7 +278,7 @@ void weld_touching_ends(CurveNet& net) {
       if (users > 1) continue;
       NearestOnNet near{{}, net.snap};
       for (int other = 0; other < std::ssize(net.curves); ++other) {
-        if (other == c || !may_meet(net.curves[c], net.curves[other])) continue;
+        if (other == c || !may_meet(net.curves[c].panels, net.curves[other].panels)) continue;
         const NearestOnNet place = nearest_on_curve(net, other, net.points[end]);
         if (place.distance < near.distance) near = place;
       }

@@ -16,9 +16,8 @@
 namespace geoprior::sketch {
 namespace {
 
-/// Points of a line that is faired, where its noise is not known and where it is.
-constexpr std::size_t kLeastPoints = 12;
-constexpr std::size_t kLeastOfKnownNoise = 6;
+/// Points of a line that is faired at least: fewer where its noise is known.
+std::size_t least_points(double noise) { return noise > 0 ? 6 : 12; }
 /// Chord that nineteen of twenty are shorter than, over the median.
 constexpr double kUneven = 3.5;
 /// Of the borders' diagonal: below it nothing trembles.
@@ -204,8 +203,7 @@ class SmoothedLine {
 FairedLine fair_line(const std::vector<Eigen::Vector2d>& points, bool closed,
                      std::array<bool, 2> hold, double least, double noise) {
   FairedLine faired{points, 0, 0};
-  if (points.size() < (noise > 0 ? kLeastOfKnownNoise : kLeastPoints)) return faired;
-  if (!is_even(points, closed)) return faired;
+  if (points.size() < least_points(noise) || !is_even(points, closed)) return faired;
   SmoothedLine line(points, closed);
   faired.noise = line.tremor();
   if (faired.noise < least) return faired;
@@ -242,8 +240,7 @@ FairedView faired_borders(const View& view, double snap) {
     std::vector<BorderPart> parts;
     for (std::size_t b = 0; b < view.strokes.size(); ++b) {
       const Stroke& stroke = view.strokes[b];
-      const std::size_t least = noise > 0 ? kLeastOfKnownNoise : kLeastPoints;
-      if (stroke.kind != StrokeKind::border || stroke.points.size() < least) continue;
+      if (stroke.kind != StrokeKind::border || stroke.points.size() < least_points(noise)) continue;
       const std::vector<std::size_t> cuts = smooth_parts(stroke.points, noise);
       const bool whole = cuts.size() == 2;
       const std::array<bool, 2> met{meets(stroke.points.front()), meets(stroke.points.back())};

@@ -154,14 +154,8 @@ double BorderCompletion::distance_to(const PartialBorder& border, const Eigen::V
 /// border of a panel of its own there.
 bool BorderCompletion::is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const {
   const double reach = kCoverReach * snap_;
-  const auto shares_panel = [&](const PartialBorder& other) {
-    return own.panels.empty() || other.panels.empty() ||
-           std::ranges::any_of(own.panels, [&](const std::string& panel) {
-             return std::ranges::find(other.panels, panel) != other.panels.end();
-           });
-  };
   for (const PartialBorder& other : borders_) {
-    if (&other == &own || other.closed || !shares_panel(other)) continue;
+    if (&other == &own || other.closed || !may_meet(own.panels, other.panels)) continue;
     for (const Eigen::Vector2d& p : {other.stretches[0].front().p, other.stretches[0].back().p})
       if ((p - end).norm() <= snap_ && other.panels != own.panels) return false;
   }
