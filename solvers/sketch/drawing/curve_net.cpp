@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "core/angles.h"
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/geometry/planar.h"
+#include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -267,8 +270,25 @@ bool holds(const SketchCurve& curve, int node) {
   return std::find(curve.nodes.begin(), curve.nodes.end(), node) != curve.nodes.end();
 }
 
+/// Strokes that a drawn ruling joins, the lower number first: two sides of one panel, which lie apart.
+std::set<std::pair<int, int>> opposite_borders(const View& view, const CurveNet& net) {
+  std::set<std::pair<int, int>> opposite;
+  for (const Stroke& stroke : view.strokes) {
+    const bool ruling = stroke.kind == StrokeKind::silhouette || stroke.kind == StrokeKind::ruling;
+    if (!ruling || stroke.points.size() < 2) continue;
+    const auto [a, b] = ruling_ends(net, stroke);
+    if (a.curve < 0 || b.curve < 0 || a.curve == b.curve) continue;
+    opposite.insert(std::minmax(net.curves[a.curve].stroke, net.curves[b.curve].stroke));
+  }
+  return opposite;
+}
+
 /// Joins free ends that touch the inside of another curve to its nearest node.
-void weld_touching_ends(CurveNet& net) {
+void weld_touching_ends(const View& view, CurveNet& net) {
+  const std::set<std::pair<int, int>> opposite = opposite_borders(view, net);
+  const auto can_meet = [&](const SketchCurve& a, const SketchCurve& b) {
+    return may_meet(a.panels, b.panels) && !opposite.contains(std::minmax(a.stroke, b.stroke));
+  };
   for (int c = 0; c < std::ssize(net.curves); ++c) {
     if (net.curves[c].closed) continue;
     for (const bool front : {true, false}) {
@@ -278,7 +298,7 @@ void weld_touching_ends(CurveNet& net) {
       if (users > 1) continue;
       NearestOnNet near{{}, net.snap};
       for (int other = 0; other < std::ssize(net.curves); ++other) {
-        if (other == c || !may_meet(net.curves[c].panels, net.curves[other].panels)) continue;
+        if (other == c || !can_meet(net.curves[c], net.curves[other])) continue;
         const NearestOnNet place = nearest_on_curve(net, other, net.points[end]);
         if (place.distance < near.distance) near = place;
       }
@@ -330,7 +350,7 @@ CurveNet build_curve_net(const View& view, const CurveNetOptions& options) {
   std::vector<DrawnPiece> pieces = drawn_pieces(view, options, net);
   close_loops(pieces, net.snap, kCornerTurn);
   add_curves(view, pieces, net);
-  weld_touching_ends(net);
+  weld_touching_ends(view, net);
   drop_unused_nodes(net);
   mark_hidden(view, net);
   return net;

@@ -51,8 +51,8 @@ struct CurveNet {
 /// Borders and occlusions of a view as curves: strokes are cut at corners (a vertex that turns by
 /// more than `corner_deg` between two chords of more than three spacings each), ends that lie
 /// within `snap` of each other become one node, an end within `snap` of the inside of another curve
-/// becomes that curve's nearest node unless they name panels and have none in common (one merely
-/// covers the other then), and a stroke whose two ends meet each other only, without a
+/// becomes that curve's nearest node unless they name panels and have none in common, or a drawn
+/// ruling joins them (one merely covers the other then), and a stroke whose two ends meet each other only, without a
 /// corner, is closed. An occlusion that runs along a border (to `snap`, root mean
 /// square) marks the part of it that something hides; another one is a border that is hidden whole.
 ///

@@ -98,7 +98,12 @@ class BorderCompletion {
   void put_strokes(CompletedView& out) const;
 
   void copy_pairs(int whole, int copy, const ParallelCopy& map);
+  [[nodiscard]] bool end_lies_on(const PartialBorder& border, const Stroke& pair,
+                                 const Eigen::Vector2d& end) const;
   [[nodiscard]] bool lies_on(const PartialBorder& border, const Stroke& pair) const;
+  [[nodiscard]] bool joins(const PartialBorder& a, const PartialBorder& b,
+                           const Stroke& pair) const;
+  [[nodiscard]] bool are_opposite(const PartialBorder& a, const PartialBorder& b) const;
   [[nodiscard]] bool is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> seen_points(const PartialBorder& border) const;
   [[nodiscard]] CopyHints hints_between(int whole, int copy) const;
@@ -150,12 +155,22 @@ double BorderCompletion::distance_to(const PartialBorder& border, const Eigen::V
   return nearest;
 }
 
+/// Whether drawn rulings join borders of these panels: two sides of one panel, which lie apart.
+bool BorderCompletion::are_opposite(const PartialBorder& a, const PartialBorder& b) const {
+  return std::any_of(rulings_.begin(), rulings_.end(), [&](const BorderRuling& ruling) {
+    const auto &first = borders_[ruling.border[0]].panels, &second = borders_[ruling.border[1]].panels;
+    return (first == a.panels && second == b.panels) || (first == b.panels && second == a.panels);
+  });
+}
+
 /// Whether an end lies on a stroke of another border or on a silhouette, and meets no end of a
 /// border of a panel of its own there.
 bool BorderCompletion::is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const {
   const double reach = kCoverReach * snap_;
   for (const PartialBorder& other : borders_) {
-    if (&other == &own || other.closed || !may_meet(own.panels, other.panels)) continue;
+    if (&other == &own || other.closed || !may_meet(own.panels, other.panels) ||
+        are_opposite(own, other))
+      continue;
     for (const Eigen::Vector2d& p : {other.stretches[0].front().p, other.stretches[0].back().p})
       if ((p - end).norm() <= snap_ && other.panels != own.panels) return false;
   }
@@ -251,6 +266,7 @@ void BorderCompletion::drop_crumbs() {
 
 /// The rulings whose ends lie on two borders; of the panel that a ruling names when both name it.
 void BorderCompletion::find_rulings() {
+  rulings_.clear();
   for (const Stroke& stroke : view_.strokes) {
     const bool ruling = stroke.kind == StrokeKind::silhouette || stroke.kind == StrokeKind::ruling;
     if (!ruling || stroke.points.size() < 2) continue;
@@ -370,35 +386,44 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
   return follow(number, model, "the parallel border '" + view_.strokes[neighbour.stroke].id + "'");
 }
 
-/// Whether both ends of a pair lie on a border that has the panels which the pair names.
-bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) const {
+/// Whether an end of a pair lies on a border that has the panels which the pair names.
+bool BorderCompletion::end_lies_on(const PartialBorder& border, const Stroke& pair,
+                                   const Eigen::Vector2d& end) const {
   const std::vector<std::string> panels = panels_in(pair.panels);
   const bool named = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
     return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
   });
-  if (!named) return false;
-  const double reach = mark_reach_;
+  const double own = distance_to(border, end);
+  if (!named || own > mark_reach_) return false;
   // Where others of the same panels are nearer, the pair belongs to them.
-  for (const Eigen::Vector2d& end : {pair.points.front(), pair.points.back()}) {
-    const double own = distance_to(border, end);
-    if (own > reach) return false;
-    for (const PartialBorder& other : borders_)
-      if (&other != &border && other.panels == border.panels && distance_to(other, end) < own)
-        return false;
-  }
-  return true;
+  return std::none_of(borders_.begin(), borders_.end(), [&](const PartialBorder& other) {
+    return &other != &border && other.panels == border.panels && distance_to(other, end) < own;
+  });
+}
+
+bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) const {
+  return end_lies_on(border, pair, pair.points.front()) &&
+         end_lies_on(border, pair, pair.points.back());
+}
+
+bool BorderCompletion::joins(const PartialBorder& a, const PartialBorder& b,
+                             const Stroke& pair) const {
+  const Eigen::Vector2d &front = pair.points.front(), &back = pair.points.back();
+  return (end_lies_on(a, pair, front) && end_lies_on(b, pair, back)) ||
+         (end_lies_on(b, pair, front) && end_lies_on(a, pair, back));
 }
 
 /// The copy of a border that is its own mirror image is so too, in the same plane: pairs of one are
-/// pairs of the other, where it has none.
+/// pairs of the other, where it has none. Not where pairs join the two: then they are each other's.
 void BorderCompletion::copy_pairs(int whole, int copy, const ParallelCopy& map) {
-  const auto on = [&](int border) {
-    return [this, border](const Stroke& pair) { return lies_on(borders_[border], pair); };
+  const auto says_more = [&](const Stroke& pair) {
+    return lies_on(borders_[copy], pair) || joins(borders_[whole], borders_[copy], pair);
   };
-  if (std::any_of(pairs_.begin(), pairs_.end(), on(copy))) return;
+  if (std::any_of(pairs_.begin(), pairs_.end(), says_more)) return;
   const Stroke& border = view_.strokes[borders_[copy].stroke];
   std::vector<Stroke> copies;
-  std::copy_if(pairs_.begin(), pairs_.end(), std::back_inserter(copies), on(whole));
+  std::copy_if(pairs_.begin(), pairs_.end(), std::back_inserter(copies),
+               [&](const Stroke& pair) { return lies_on(borders_[whole], pair); });
   for (Stroke& pair : copies) {
     pair.id = border.id + "-" + pair.id;
     pair.panels = border.name;
@@ -424,24 +449,15 @@ bool BorderCompletion::between_own_silhouettes(int number) const {
 bool BorderCompletion::go_round(int number) {
   PartialBorder& border = borders_[number];
   if (border.closed || !border.covered[0] || !border.covered[1]) return false;
-  std::vector<Eigen::Vector2d> seen = seen_points(border);
   const std::string where = "stroke '" + view_.strokes[border.stroke].id + "'";
   try {
-    const EllipseFit own = fit_ellipse(seen, where);
+    const EllipseFit own = fit_ellipse(seen_points(border), where);
     const double least = between_own_silhouettes(number) ? kRimBetweenSilhouettes : kRimSpan;
     if (own.rms > kCoverReach * snap_ || own.span < least) return false;
-    Ellipse ellipse = own.ellipse;
-    if (const std::optional<PictureMirror> mirror = mirror_of(border);
-        mirror && completion_ == Completion::all) {
-      std::vector<Eigen::Vector2d> both = seen;
-      for (const Eigen::Vector2d& p : seen) both.push_back((*mirror)(p));
-      const EllipseFit symmetric = fit_ellipse(both, where);
-      if (symmetric.rms <= kCoverReach * snap_) ellipse = symmetric.ellipse;
-    }
     PictureCurve model{{}, true};
     constexpr int kAround = 240;
     for (int k = 0; k < kAround; ++k)
-      model.points.push_back(ellipse.point(kFullTurn * k / kAround));
+      model.points.push_back(own.ellipse.point(kFullTurn * k / kAround));
     return follow(number, evenly(model, kGuessSpacing * diagonal_), "an ellipse");
   } catch (const Error&) {
     return false;  // no ellipse: another way is tried
@@ -659,6 +675,7 @@ void BorderCompletion::put_strokes(CompletedView& out) const {
 }
 
 CompletedView BorderCompletion::complete() {
+  find_rulings();
   find_covered_ends();
   join_stretches();
   drop_crumbs();

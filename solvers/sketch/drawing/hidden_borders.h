@@ -54,8 +54,9 @@ struct CompletedView {
 ///    is seen of a rim that is smaller than its neighbour, and on the copy but for noise, is put
 ///    there. Its pairs come along where none is drawn.
 /// 3. A rim whose ends are both covered, and which is seen for more than five ninths of an ellipse
-///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen and
-///    its mirror image.
+///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen.
+///    Its pairs would say where it is symmetric, but their ends are single points: with noise they
+///    lead astray.
 /// 4. A border with two pairs is continued by its mirror image.
 /// 5. Stretches that are still apart are joined by a cubic; a flat panel whose borders are still no
 ///    loop is closed by a straight line.

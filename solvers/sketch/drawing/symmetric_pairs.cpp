@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,8 @@ constexpr double kPairHand = 0.03;
 constexpr double kBorderVariance = 0.1;
 /// Deviations by which an end slides at most.
 constexpr double kMostSlide = 3;
+/// Pairs that say which borders are each other's image, against one that does not.
+constexpr int kVotes = 2;
 /// Nodes on either side in the fit of the direction in which an end slides.
 constexpr int kSlideHalfWidth = 3;
 
@@ -145,14 +148,59 @@ void slide_ends(SymmetricPair& pair, const CurveNet& net, const MirrorPlane& pla
   image.slide(net, std::clamp(-by * image.rate, -most, most));
 }
 
-SymmetricPair read_pair(const Stroke& stroke, const CurveNet& net, const MirrorPlane& plane,
-                        double noise) {
+/// A drawn pair before its ends are put onto borders.
+struct DrawnPair {
+  SymmetricPair pair;
+  std::string panels;
+  std::array<CurvePoint, 2> ends;
+
+  [[nodiscard]] std::array<int, 2> borders() const {
+    return {std::min(ends[0].curve, ends[1].curve), std::max(ends[0].curve, ends[1].curve)};
+  }
+};
+
+DrawnPair drawn_pair(const Stroke& stroke, const CurveNet& net, const MirrorPlane& plane) {
   const std::string where = "stroke '" + stroke.id + "'";
   if (stroke.points.empty()) throw Error("symmetric pair without points", where, "two points");
   SymmetricPair pair{stroke.id, stroke.points.front(), stroke.points.back(), false, {}, {}};
   pair.in_plane = (pair.image - pair.point).norm() <= net.snap / 4;
-  const std::array<CurvePoint, 2> ends =
-      borders_of_ends(net, borders_for_pair(net, stroke), pair, plane, where);
+  return {pair, stroke.panels,
+          borders_of_ends(net, borders_for_pair(net, stroke), pair, plane, where)};
+}
+
+/// Where two borders are each other's image a pair of the same panels joins them, too, although
+/// noise put both its ends onto one: a border has one image.
+void join_as_others(std::vector<DrawnPair>& pairs, const CurveNet& net) {
+  for (DrawnPair& drawn : pairs) {
+    const auto [curve, same] = drawn.borders();
+    if (curve != same || drawn.pair.in_plane) continue;
+    std::map<int, int> votes;  // for a border as the image of this one
+    for (const DrawnPair& other : pairs) {
+      const auto [a, b] = other.borders();
+      if (&other == &drawn || other.panels != drawn.panels || (a != curve && b != curve)) continue;
+      ++votes[a == curve ? b : a];
+    }
+    const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    });
+    if (most == votes.end() || most->first == curve || most->second < kVotes) continue;
+    const auto ends_on = [&](int first, int second) {
+      return std::array<NearestOnNet, 2>{nearest_on_curve(net, first, drawn.pair.point),
+                                         nearest_on_curve(net, second, drawn.pair.image)};
+    };
+    const auto distance = [](const std::array<NearestOnNet, 2>& ends) {
+      return std::max(ends[0].distance, ends[1].distance);
+    };
+    const auto one = ends_on(curve, most->first), other = ends_on(most->first, curve);
+    const auto& best = distance(one) <= distance(other) ? one : other;
+    if (distance(best) <= reach_of_ends(net)) drawn.ends = {best[0].place, best[1].place};
+  }
+}
+
+SymmetricPair placed_pair(const DrawnPair& drawn, const CurveNet& net, const MirrorPlane& plane,
+                          double noise) {
+  const std::array<CurvePoint, 2>& ends = drawn.ends;
+  SymmetricPair pair = drawn.pair;
   pair.point_at = all_places(net, ends[0]);
   pair.image_at = pair.in_plane ? pair.point_at : all_places(net, ends[1]);
   if (noise > 0 && !pair.in_plane) {
@@ -210,9 +258,12 @@ Eigen::Vector2d across_pairs(const MirrorPlane& plane) {
 std::vector<SymmetricPair> read_symmetric_pairs(const View& view, const CurveNet& net,
                                                 const MirrorPlane& plane, double tolerance,
                                                 double noise) {
-  std::vector<SymmetricPair> pairs;
+  std::vector<DrawnPair> drawn;
   for (const Stroke* stroke : strokes_of(view, StrokeKind::symmetric_pair))
-    pairs.push_back(read_pair(*stroke, net, plane, noise));
+    drawn.push_back(drawn_pair(*stroke, net, plane));
+  join_as_others(drawn, net);
+  std::vector<SymmetricPair> pairs;
+  for (const DrawnPair& pair : drawn) pairs.push_back(placed_pair(pair, net, plane, noise));
   if (pairs.empty()) {
     throw Error("no symmetric pair is drawn: depth is not determined", view_name(view.kind),
                 "one pair or more");

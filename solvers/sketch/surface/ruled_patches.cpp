@@ -8,14 +8,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
 namespace {
-
-/// Ends of rulings are drawn onto borders by hand: they may miss by this many snapping distances.
-constexpr double kRulingReach = 2;
-/// And by this share of the diagonal, however finely ends are snapped.
-constexpr double kRulingHand = 0.03;
 
 /// A drawn ruling as nodes of two borders.
 struct DrawnRuling {
@@ -61,46 +57,17 @@ int node_near(const CurveNet& net, const CurvePoint& place) {
   return node;
 }
 
-/// Borders that an end of a ruling may lie on: those of the panel that it names, else all.
-std::vector<int> borders_for_ruling(const CurveNet& net, const Stroke& stroke) {
-  std::vector<int> all, named;
-  for (int c = 0; c < std::ssize(net.curves); ++c) {
-    all.push_back(c);
-    const std::vector<std::string>& panels = net.curves[c].panels;
-    if (std::find(panels.begin(), panels.end(), stroke.name) != panels.end()) named.push_back(c);
-  }
-  return named.size() < 2 ? all : named;
-}
-
-/// Places of the two ends on two different borders, with the least sum of distances.
+/// Places of the two ends on two different borders.
 std::array<CurvePoint, 2> borders_of_ruling(const CurveNet& net, const Stroke& stroke) {
-  const double reach = std::max(kRulingReach * net.snap, kRulingHand * net.diagonal);
-  const std::vector<int> borders = borders_for_ruling(net, stroke);
-  const auto near = [&](bool front, int skip) {
-    NearestOnNet best{{}, reach};
-    for (const int c : borders) {
-      if (c == skip) continue;
-      const NearestOnNet place =
-          nearest_on_curve(net, c, front ? stroke.points.front() : stroke.points.back());
-      if (place.distance < best.distance) best = place;
-    }
-    return best;
-  };
-  const NearestOnNet a = near(true, -1), b = near(false, -1);
+  const std::array<CurvePoint, 2> ends = ruling_ends(net, stroke);
   const std::string where = "stroke '" + stroke.id + "'";
-  const std::string allowed = "each end within " + std::to_string(reach) +
+  const std::string allowed = "each end within " + std::to_string(reach_of_rulings(net)) +
                               " m of a border of its own; borders end at corners";
-  if (a.place.curve < 0 || b.place.curve < 0)
+  if (ends[0].curve < 0 || ends[1].curve < 0)
     throw Error("an end of the ruling joins no border", where, allowed);
-  if (a.place.curve != b.place.curve) return {a.place, b.place};
-  const NearestOnNet other_a = near(true, a.place.curve), other_b = near(false, b.place.curve);
-  if (other_a.place.curve < 0 && other_b.place.curve < 0)
+  if (ends[0].curve == ends[1].curve)
     throw Error("the ruling does not join two different borders", where, allowed);
-  const bool move_a =
-      other_b.place.curve < 0 ||
-      (other_a.place.curve >= 0 && other_a.distance + b.distance < a.distance + other_b.distance);
-  if (move_a) return {other_a.place, b.place};
-  return {a.place, other_b.place};
+  return ends;
 }
 
 using RulingsOfBorders = std::map<std::pair<int, int>, std::vector<DrawnRuling>>;
