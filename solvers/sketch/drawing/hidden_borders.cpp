@@ -104,7 +104,8 @@ class BorderCompletion {
   [[nodiscard]] bool joins(const PartialBorder& a, const PartialBorder& b,
                            const Stroke& pair) const;
   [[nodiscard]] bool are_opposite(const PartialBorder& a, const PartialBorder& b) const;
-  [[nodiscard]] bool is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const;
+  [[nodiscard]] bool is_covered(const PartialBorder& own, const Eigen::Vector2d& end,
+                                const Eigen::Vector2d& other_end) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> seen_points(const PartialBorder& border) const;
   [[nodiscard]] CopyHints hints_between(int whole, int copy) const;
   [[nodiscard]] std::optional<PictureMirror> mirror_of(const PartialBorder& border) const;
@@ -164,15 +165,18 @@ bool BorderCompletion::are_opposite(const PartialBorder& a, const PartialBorder&
 }
 
 /// Whether an end lies on a stroke of another border or on a silhouette, and meets no end of a
-/// border of a panel of its own there.
-bool BorderCompletion::is_covered(const PartialBorder& own, const Eigen::Vector2d& end) const {
+/// border of a panel of its own there. Such a border meets one of the two ends, the nearer one.
+bool BorderCompletion::is_covered(const PartialBorder& own, const Eigen::Vector2d& end,
+                                  const Eigen::Vector2d& other_end) const {
   const double reach = kCoverReach * snap_;
   for (const PartialBorder& other : borders_) {
     if (&other == &own || other.closed || !may_meet(own.panels, other.panels) ||
         are_opposite(own, other))
       continue;
     for (const Eigen::Vector2d& p : {other.stretches[0].front().p, other.stretches[0].back().p})
-      if ((p - end).norm() <= snap_ && other.panels != own.panels) return false;
+      if ((p - end).norm() <= std::min(snap_, (p - other_end).norm()) &&
+          other.panels != own.panels)
+        return false;
   }
   for (const PartialBorder& other : borders_)
     if (&other != &own && distance_to(other, end) <= reach) return true;
@@ -186,7 +190,8 @@ void BorderCompletion::find_covered_ends() {
   for (PartialBorder& border : borders_) {
     if (border.closed) continue;
     const Stretch& stretch = border.stretches.front();
-    border.covered = {is_covered(border, stretch.front().p), is_covered(border, stretch.back().p)};
+    const Eigen::Vector2d &front = stretch.front().p, &back = stretch.back().p;
+    border.covered = {is_covered(border, front, back), is_covered(border, back, front)};
   }
 }
 

@@ -13,6 +13,9 @@
 namespace geoprior::sketch {
 namespace {
 
+/// Of a border's nodes, to either side of a ruling: by which its sense is told.
+constexpr int kSensePart = 8;
+
 /// A drawn ruling as nodes of two borders.
 struct DrawnRuling {
   std::string id;
@@ -114,9 +117,8 @@ class PatchSweep {
   [[nodiscard]] Eigen::Vector2d tangent(const SketchCurve& curve, int i, int way) const {
     return way * evaluate(net_, tangent_form(curve, i, half_width_)).normalized();
   }
-  [[nodiscard]] int same_sense(const DrawnRuling& at) const {
-    return tangent(first(), at.i, 1).dot(tangent(second(), at.j, 1)) >= 0 ? 1 : -1;
-  }
+  [[nodiscard]] bool goes_on(const DrawnRuling& at, int way) const;
+  [[nodiscard]] int same_sense(const DrawnRuling& at) const;
   [[nodiscard]] NodeRun run_to_end(const SketchCurve& curve, int from, int way) const;
   [[nodiscard]] BorderRun samples(const SketchCurve& curve, const NodeRun& run) const;
   void order(std::vector<DrawnRuling>& drawn) const;
@@ -129,6 +131,25 @@ class PatchSweep {
   RulingWarpOptions options_;
   RuledPatch patch_;
 };
+
+/// Whether there is a patch on either side of a ruling when the second border runs by `way`.
+bool PatchSweep::goes_on(const DrawnRuling& at, int way) const {
+  const auto has_next = [](const SketchCurve& curve, int i, int step) {
+    return curve.closed || (i + step >= 0 && i + step < curve.size());
+  };
+  return (has_next(first(), at.i, 1) && has_next(second(), at.j, way)) ||
+         (has_next(first(), at.i, -1) && has_next(second(), at.j, -way));
+}
+
+/// Whether the borders run alike (+1) or against each other: by their directions over a part that
+/// noise at an end does not turn, unless only one of the two leaves a patch.
+int PatchSweep::same_sense(const DrawnRuling& at) const {
+  const auto direction = [&](const SketchCurve& curve, int i) {
+    return evaluate(net_, tangent_form(curve, i, std::max(half_width_, curve.size() / kSensePart)));
+  };
+  const int way = direction(first(), at.i).dot(direction(second(), at.j)) >= 0 ? 1 : -1;
+  return goes_on(at, way) || !goes_on(at, -way) ? way : -way;
+}
 
 NodeRun PatchSweep::run_to_end(const SketchCurve& curve, int from, int way) const {
   if (curve.closed) return {from, way, curve.size() + 1, false};
