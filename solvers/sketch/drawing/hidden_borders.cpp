@@ -16,6 +16,7 @@
 #include "core/geometry/planar.h"
 #include "models/sketch/drawing/ellipse_fit.h"
 #include "solvers/sketch/drawing/border_models.h"
+#include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -275,21 +276,21 @@ void BorderCompletion::find_rulings() {
   for (const Stroke& stroke : view_.strokes) {
     const bool ruling = stroke.kind == StrokeKind::silhouette || stroke.kind == StrokeKind::ruling;
     if (!ruling || stroke.points.size() < 2) continue;
-    BorderRuling found;
-    found.end = {stroke.points.front(), stroke.points.back()};
-    for (int k = 0; k < 2; ++k) {
-      double least = mark_reach_;
-      for (int b = 0; b < std::ssize(borders_); ++b) {
-        const std::vector<std::string>& panels = borders_[b].panels;
-        const bool named = stroke.name.empty() ||
-                           std::find(panels.begin(), panels.end(), stroke.name) != panels.end();
-        const double distance = distance_to(borders_[b], found.end[k]);
-        if (!named || b == found.border[0] || distance >= least) continue;
-        least = distance;
-        found.border[k] = b;
-      }
+    std::vector<int> named;
+    std::array<std::vector<double>, 2> distances;
+    for (int b = 0; b < std::ssize(borders_); ++b) {
+      const std::vector<std::string>& panels = borders_[b].panels;
+      if (!stroke.name.empty() &&
+          std::find(panels.begin(), panels.end(), stroke.name) == panels.end())
+        continue;
+      named.push_back(b);
+      distances[0].push_back(distance_to(borders_[b], stroke.points.front()));
+      distances[1].push_back(distance_to(borders_[b], stroke.points.back()));
     }
-    if (found.border[0] >= 0 && found.border[1] >= 0) rulings_.push_back(found);
+    const auto [first, second] = two_borders(distances[0], distances[1], mark_reach_);
+    if (first < 0 || second < 0 || first == second) continue;
+    rulings_.push_back({{named[first], named[second]},
+                        {stroke.points.front(), stroke.points.back()}});
   }
 }
 

@@ -1,8 +1,8 @@
 #include "solvers/sketch/drawing/ruling_ends.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
-#include <vector>
 
 namespace geoprior::sketch {
 namespace {
@@ -29,27 +29,44 @@ double reach_of_rulings(const CurveNet& net) {
   return std::max(kRulingReach * net.snap, kRulingHand * net.diagonal);
 }
 
-std::array<CurvePoint, 2> ruling_ends(const CurveNet& net, const Stroke& ruling) {
-  const std::vector<int> borders = borders_for_ruling(net, ruling);
-  const auto near = [&](bool front, int skip) {
-    NearestOnNet best{{-1, 0}, reach_of_rulings(net)};
-    for (const int c : borders) {
-      if (c == skip) continue;
-      const NearestOnNet place =
-          nearest_on_curve(net, c, front ? ruling.points.front() : ruling.points.back());
-      if (place.distance < best.distance) best = place;
+std::array<int, 2> two_borders(const std::vector<double>& from_first,
+                               const std::vector<double>& from_second, double reach) {
+  const int count = static_cast<int>(from_first.size());
+  std::array<int, 2> best{-1, -1};
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b < count; ++b) {
+      const double sum = from_first[a] + from_second[b];
+      if (a == b || from_first[a] >= reach || from_second[b] >= reach || sum >= least) continue;
+      least = sum;
+      best = {a, b};
     }
-    return best;
+  }
+  if (best[0] >= 0) return best;
+  const auto nearest = [&](const std::vector<double>& distances) {
+    const auto least_of = std::min_element(distances.begin(), distances.end());
+    if (least_of == distances.end() || *least_of >= reach) return -1;
+    return static_cast<int>(least_of - distances.begin());
   };
-  const NearestOnNet a = near(true, -1), b = near(false, -1);
-  if (a.place.curve < 0 || a.place.curve != b.place.curve) return {a.place, b.place};
-  const NearestOnNet other_a = near(true, a.place.curve), other_b = near(false, b.place.curve);
-  if (other_a.place.curve < 0 && other_b.place.curve < 0) return {a.place, b.place};
-  const bool move_a =
-      other_b.place.curve < 0 ||
-      (other_a.place.curve >= 0 && other_a.distance + b.distance < a.distance + other_b.distance);
-  if (move_a) return {other_a.place, b.place};
-  return {a.place, other_b.place};
+  return {nearest(from_first), nearest(from_second)};
+}
+
+std::array<CurvePoint, 2> ruling_ends(const CurveNet& net, const Stroke& ruling) {
+  std::array<std::vector<CurvePoint>, 2> places;
+  std::array<std::vector<double>, 2> distances;
+  for (const int c : borders_for_ruling(net, ruling)) {
+    for (const int k : {0, 1}) {
+      const NearestOnNet near =
+          nearest_on_curve(net, c, k == 0 ? ruling.points.front() : ruling.points.back());
+      places[k].push_back(near.place);
+      distances[k].push_back(near.distance);
+    }
+  }
+  const std::array<int, 2> found = two_borders(distances[0], distances[1], reach_of_rulings(net));
+  std::array<CurvePoint, 2> ends;
+  for (const int k : {0, 1})
+    if (found[k] >= 0) ends[k] = places[k][found[k]];
+  return ends;
 }
 
 }  // namespace geoprior::sketch
