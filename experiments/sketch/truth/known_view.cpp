@@ -39,6 +39,7 @@ class KnownDrawing {
   [[nodiscard]] Eigen::Vector3d last_seen(Eigen::Vector3d seen, Eigen::Vector3d hidden) const;
   void draw_hidden(const std::string& id, std::vector<Eigen::Vector3d> points, bool closed);
   void draw_rulings(const KnownPanel& panel);
+  [[nodiscard]] KnownPanel shown_part(const KnownPanel& panel) const;
   void draw_pairs();
   void draw_vector(const std::string& name, const Eigen::Vector3d& head);
 
@@ -207,6 +208,29 @@ void KnownDrawing::draw_rulings(const KnownPanel& panel) {
   add(panel.name + "-ruling", StrokeKind::ruling, {a[k], b[k]}).name = panel.name;
 }
 
+/// A ruled panel up to the last places where one of its two borders is seen: how far an open one goes
+/// on when both are hidden, no drawing of visible borders tells.
+KnownPanel KnownDrawing::shown_part(const KnownPanel& panel) const {
+  const auto is_ring = [](const std::vector<Eigen::Vector3d>& p) {
+    return (p.front() - p.back()).norm() == 0;
+  };
+  if (!visible_only_ || panel.flat || is_ring(panel.first)) return panel;
+  const auto is_shown = [&](std::size_t k) {
+    return !is_hidden(place_(panel.first[k])) || !is_hidden(place_(panel.second[k]));
+  };
+  std::size_t begin = 0, end = panel.first.size();
+  while (begin < end && !is_shown(begin)) ++begin;
+  while (end > begin && !is_shown(end - 1)) --end;
+  KnownPanel shown = panel;
+  const auto part = [&](const std::vector<Eigen::Vector3d>& p) {
+    return std::vector<Eigen::Vector3d>(p.begin() + static_cast<std::ptrdiff_t>(begin),
+                                        p.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  shown.first = part(panel.first);
+  shown.second = part(panel.second);
+  return shown;
+}
+
 void KnownDrawing::draw_pairs() {
   for (const KnownPair& pair : object_.pairs) {
     Eigen::Vector3d p = pair.point;
@@ -236,7 +260,7 @@ SyntheticView KnownDrawing::draw() {
   draw_borders();
   for (const KnownPanel& panel : object_.panels) {
     if (!panel.flat) draw_rulings(panel);
-    const TriMesh mesh = panel_mesh(panel);
+    const TriMesh mesh = panel_mesh(shown_part(panel));
     out_.panel_areas[panel.name] = triangle_areas(mesh.V, mesh.F).sum();
   }
   draw_pairs();

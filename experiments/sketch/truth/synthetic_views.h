@@ -50,7 +50,9 @@ struct SyntheticView {
   Eigen::Vector3d axis{0, 1, 0};           ///< of the cone, up
   Eigen::Vector3d apex{0, 0, 0};           ///< of the cone; far away for a cylinder
   double height = 0;                       ///< m
-  std::map<std::string, double> panel_areas = {};  ///< of named panels, where they are known (m^2)
+  /// Of named panels, where they are known; of visible borders alone that of ruled panels up to the
+  /// last places where one of their two borders is seen (m^2).
+  std::map<std::string, double> panel_areas = {};
   /// Borders with their hidden parts, of a known object; a closed one ends with its first point.
   std::vector<std::vector<Eigen::Vector3d>> borders = {};
 };
