@@ -40,6 +40,7 @@ class KnownDrawing {
   void draw_hidden(const std::string& id, std::vector<Eigen::Vector3d> points, bool closed);
   void draw_rulings(const KnownPanel& panel);
   [[nodiscard]] KnownPanel shown_part(const KnownPanel& panel) const;
+  [[nodiscard]] std::vector<const KnownPanel*> row_of(const KnownPanel& panel) const;
   void draw_pairs();
   void draw_vector(const std::string& name, const Eigen::Vector3d& head);
 
@@ -208,27 +209,37 @@ void KnownDrawing::draw_rulings(const KnownPanel& panel) {
   add(panel.name + "-ruling", StrokeKind::ruling, {a[k], b[k]}).name = panel.name;
 }
 
-/// A ruled panel up to the last places where one of its two borders is seen: how far an open one goes
-/// on when both are hidden, no drawing of visible borders tells.
+/// The ruled panels that follow each other from border to border, this one among them.
+std::vector<const KnownPanel*> KnownDrawing::row_of(const KnownPanel& panel) const {
+  std::vector<const KnownPanel*> row{&panel};
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    for (const KnownPanel& other : object_.panels) {
+      const bool follows = other.first == row[k]->second || other.second == row[k]->first;
+      if (!other.flat && follows && std::find(row.begin(), row.end(), &other) == row.end())
+        row.push_back(&other);
+    }
+  }
+  return row;
+}
+
+/// A ruled panel up to the last places where a border of its row of panels is seen: how far an open
+/// row goes on where all are hidden, no drawing of visible borders tells.
 KnownPanel KnownDrawing::shown_part(const KnownPanel& panel) const {
-  const auto is_ring = [](const std::vector<Eigen::Vector3d>& p) {
-    return (p.front() - p.back()).norm() == 0;
-  };
-  if (!visible_only_ || panel.flat || is_ring(panel.first)) return panel;
+  if (!visible_only_ || panel.flat || panel.first.front() == panel.first.back()) return panel;
+  const std::vector<const KnownPanel*> row = row_of(panel);
   const auto is_shown = [&](std::size_t k) {
-    return !is_hidden(place_(panel.first[k])) || !is_hidden(place_(panel.second[k]));
+    return std::any_of(row.begin(), row.end(), [&](const KnownPanel* p) {
+      return !is_hidden(place_(p->first[k])) || !is_hidden(place_(p->second[k]));
+    });
   };
   std::size_t begin = 0, end = panel.first.size();
   while (begin < end && !is_shown(begin)) ++begin;
   while (end > begin && !is_shown(end - 1)) --end;
-  KnownPanel shown = panel;
   const auto part = [&](const std::vector<Eigen::Vector3d>& p) {
     return std::vector<Eigen::Vector3d>(p.begin() + static_cast<std::ptrdiff_t>(begin),
                                         p.begin() + static_cast<std::ptrdiff_t>(end));
   };
-  shown.first = part(panel.first);
-  shown.second = part(panel.second);
-  return shown;
+  return {panel.name, false, part(panel.first), part(panel.second)};
 }
 
 void KnownDrawing::draw_pairs() {

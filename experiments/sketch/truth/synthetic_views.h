@@ -51,7 +51,7 @@ struct SyntheticView {
   Eigen::Vector3d apex{0, 0, 0};           ///< of the cone; far away for a cylinder
   double height = 0;                       ///< m
   /// Of named panels, where they are known; of visible borders alone that of ruled panels up to the
-  /// last places where one of their two borders is seen (m^2).
+  /// last places where a border of their row of panels is seen (m^2).
   std::map<std::string, double> panel_areas = {};
   /// Borders with their hidden parts, of a known object; a closed one ends with its first point.
   std::vector<std::vector<Eigen::Vector3d>> borders = {};

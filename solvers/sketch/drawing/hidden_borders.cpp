@@ -324,7 +324,7 @@ bool BorderCompletion::follow(int number, const PictureCurve& model, const std::
   // The covered ends go with the sense of the first stretch.
   std::array<bool, 2> covered = border.covered;
   if (placed.front().turned) std::swap(covered[0], covered[1]);
-  const double least = kCoverReach * snap_;
+  const double least = snap_;
   const double last = static_cast<double>(model.points.size()) - 1;
   const PlacedStretch &first = placed.front(), &back = placed.back();
   FollowedModel whole{model, {}, 0};
