@@ -44,6 +44,9 @@ struct CopyRows {
   }
 };
 
+/// Of the noise: a copy of the original's size that fits worse by less, root mean square, is as good.
+constexpr double kSameSize = 1.25;
+
 /// Fits in a frame in which what is seen has mean 0 and extent 1.
 class CopyFit {
  public:
@@ -54,7 +57,7 @@ class CopyFit {
   }
   [[nodiscard]] std::vector<ParallelCopy> starts() const;
   /// One step; the normal matrix of it.
-  Eigen::Matrix3d step(ParallelCopy& copy, bool with_ends) const;
+  Eigen::Matrix3d step(ParallelCopy& copy, bool with_ends, bool same_size = false) const;
   [[nodiscard]] double rms(const ParallelCopy& copy) const;
 
  private:
@@ -90,7 +93,7 @@ std::vector<ParallelCopy> CopyFit::starts() const {
   return starts;
 }
 
-Eigen::Matrix3d CopyFit::step(ParallelCopy& copy, bool with_ends) const {
+Eigen::Matrix3d CopyFit::step(ParallelCopy& copy, bool with_ends, bool same_size) const {
   CopyRows rows;
   for (const Eigen::Vector2d& p : seen_) {
     const CurvePlace place = place_of(copy, p);
@@ -116,7 +119,11 @@ Eigen::Matrix3d CopyFit::step(ParallelCopy& copy, bool with_ends) const {
   Eigen::Matrix3d N = rows.N;
   const double hold = 1e-9 * N.trace();
   N.diagonal().array() += hold;
-  const Eigen::Vector3d x = N.ldlt().solve(rows.b + hold * before);
+  Eigen::Vector3d x = N.ldlt().solve(rows.b + hold * before);
+  if (same_size) {
+    const Eigen::Vector2d b = (rows.b + hold * before).tail<2>() - N.block<2, 1>(1, 0);
+    x << 1, N.bottomRightCorner<2, 2>().ldlt().solve(b);
+  }
   if (x.allFinite() && x(0) > 1e-3) copy = {x(0), x.tail<2>(), 0};
   return rows.N;
 }
@@ -183,7 +190,7 @@ PictureCurve evenly(const PictureCurve& curve, double spacing) {
 
 std::optional<ParallelCopy> fit_parallel_copy(const PictureCurve& whole,
                                               const std::vector<Eigen::Vector2d>& seen,
-                                              const CopyHints& hints) {
+                                              const CopyHints& hints, double noise) {
   if (seen.size() < 3 || whole.points.size() < 3) return {};
   const CopyFit fit(whole, seen, hints);
   std::optional<ParallelCopy> best;
@@ -196,6 +203,10 @@ std::optional<ParallelCopy> fit_parallel_copy(const PictureCurve& whole,
   Eigen::Matrix3d N;
   for (int k = 0; k < kCopySteps; ++k) N = fit.step(*best, k > kRoughSteps);
   best->rms = fit.rms(*best);
+  ParallelCopy same = *best;
+  for (int k = 0; k < kCopySteps; ++k) fit.step(same, k > kRoughSteps, true);
+  same.rms = fit.rms(same);
+  if (std::pow(same.rms, 2) <= std::pow(best->rms, 2) + std::pow(kSameSize * noise, 2)) best = same;
   // Shift of the middle of what is seen, and scale about it: both lengths.
   Eigen::Vector2d mean(0, 0);
   double extent = 0;

@@ -47,11 +47,13 @@ struct CopyHints {
 
 /// Copy of `whole` through the points of another border, by iterated closest points (distances to
 /// tangents, which is linear in scale and shift), from the rulings or, without any, from several
-/// places. A ruling counts as much as an eighth of the points.
+/// places. A ruling counts as much as an eighth of the points. Borders of a cylinder are of one
+/// size: so is the copy, unless the points say otherwise beyond their noise.
+/// @param noise  standard deviation of a drawn coordinate (m)
 /// @return nothing when the points leave scale or shift open
 std::optional<ParallelCopy> fit_parallel_copy(const PictureCurve& whole,
                                               const std::vector<Eigen::Vector2d>& seen,
-                                              const CopyHints& hints);
+                                              const CopyHints& hints, double noise = 0);
 
 /// Mirror image of a plane curve that is its own image, in the picture: p -> p + s(p) u with u the
 /// image of the mirror plane's normal and s(p) = offset - 2 u.p + slope v.p, v across u.

@@ -375,7 +375,7 @@ bool BorderCompletion::copy_neighbour(int number, bool only_whole) {
       continue;
     const PictureCurve model = evenly(picture_of(neighbour.stretches.front(), neighbour.closed),
                                       kGuessSpacing * diagonal_);
-    const std::optional<ParallelCopy> copy = fit_parallel_copy(model, seen, hints);
+    const std::optional<ParallelCopy> copy = fit_parallel_copy(model, seen, hints, noise_);
     if (!copy || copy->rms > kCoverReach * snap_ || (best && best->rms <= copy->rms)) continue;
     best = copy;
     from = other;
@@ -577,7 +577,7 @@ std::vector<std::array<int, 2>> BorderCompletion::parallel_borders() {
           evenly(picture_of(borders_[a].stretches.front(), borders_[a].closed),
                  2 * kGuessSpacing * diagonal_);
       const std::optional<ParallelCopy> copy =
-          fit_parallel_copy(whole, seen_points(borders_[b]), {hints.rulings, {}});
+          fit_parallel_copy(whole, seen_points(borders_[b]), {hints.rulings, {}}, noise_);
       if (copy && copy->rms <= copy_evidence_)
         copies.push_back({borders_[a].stroke, borders_[b].stroke});
     }
