@@ -14,6 +14,9 @@ namespace {
 /// Of the length of all pairs: by which they miss the direction of the normal at most.
 constexpr double kMostMiss = 0.04;
 
+/// Of its chord: a stretch over less of u runs along the normal's image.
+constexpr double kLevel = 0.12;
+
 /// A drawn pair as places on two borders.
 struct PairAnchor {
   double first = 0;
@@ -45,6 +48,9 @@ class StretchMatcher {
   [[nodiscard]] bool crosses_plane(int curve, double at) const {
     return std::abs(slope(curve, static_cast<int>(std::lround(at)))) < least_slope_;
   }
+  /// Whether a stretch runs along the normal's image as a whole, as the sill of a door does, so that
+  /// what u has of slopes is noise.
+  [[nodiscard]] bool runs_along_normal(int curve, const MatchedStretch& stretch) const;
   /// Mean distance in u of proportional places: small for the right way round a closed border.
   [[nodiscard]] double mismatch(int first, int second, const MatchedStretch& stretch) const;
 
@@ -110,6 +116,18 @@ void StretchMatcher::match(int first, int second, const MatchedStretch& stretch,
     matches.push_back({node_of(net_.curves[first], i), {second, *place}});
     from = *place;
   }
+}
+
+bool StretchMatcher::runs_along_normal(int curve, const MatchedStretch& stretch) const {
+  const auto [begin, end] = std::minmax(stretch.begin, stretch.end);
+  double low = u_at(curve, begin), high = low;
+  for (double at = std::floor(begin) + 1; at < end; at += 1) {
+    low = std::min(low, u_at(curve, at));
+    high = std::max(high, u_at(curve, at));
+  }
+  const Eigen::Vector2d chord = evaluate(net_, position_form(net_, {curve, end})) -
+                                evaluate(net_, position_form(net_, {curve, begin}));
+  return high - low < kLevel * chord.norm();
 }
 
 double StretchMatcher::mismatch(int first, int second, const MatchedStretch& stretch) const {
@@ -236,7 +254,8 @@ std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<Sym
         for (const MatchedStretch& s : stretches_beyond(anchors, first, second))
           stretches.push_back(s);
       }
-      for (const MatchedStretch& s : stretches) matcher.match(a, b, s, matches);
+      for (const MatchedStretch& s : stretches)
+        if (!matcher.runs_along_normal(a, s)) matcher.match(a, b, s, matches);
     }
   }
   return matches;

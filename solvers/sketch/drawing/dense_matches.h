@@ -24,7 +24,7 @@ struct DenseMatch {
 /// border that is its own image (it runs along n_xy there); neither where the pairs miss the
 /// normal's direction by more than 4 % of their length, since u is wrong then. Nodes where the
 /// border runs within `steep_deg` of n_xy are left out: u is stationary there and noise decides the
-/// place.
+/// place; so are stretches that run along n_xy as a whole, as a door's sill does.
 ///
 /// @param half_width  nodes on either side for tangents
 /// @throws Error      when the order of pairs along the two borders differs (names two pairs)
