@@ -119,6 +119,8 @@ void describe(OptionVisitor& v, KnownDrawingOptions& o) {
   describe_choice(v, "shape", o.shape, kKnownNames, {.doc = "the object that the drawing shows"});
   v.value("noise", o.noise,
           {.doc = "standard deviation of drawn points, over the height", .min = 0, .max = 1});
+  v.value("noisy_vectors", o.noisy_vectors,
+          {.doc = "whether the vectors of the mirror plane are noisy too"});
   v.value(
       "vector_stretch", o.vector_stretch,
       {.doc =
@@ -187,7 +189,7 @@ SyntheticView known_truth(const View& view, const KnownDrawingOptions& options,
       stroke.points.back() = tail + options.vector_stretch * (stroke.points.back() - tail);
     }
   }
-  add_drawing_noise(truth.view, options.noise * object.height, seed);
+  add_drawing_noise(truth.view, options.noise * object.height, seed, options.noisy_vectors);
   return truth;
 }
 

@@ -15,6 +15,7 @@ namespace geoprior::sketch {
 struct KnownDrawingOptions {
   KnownShape shape = KnownShape::bag;
   double noise = 0;
+  bool noisy_vectors = false;
   double vector_stretch = 1;  ///< of sym-a: above 1 the two vectors are of unequal length in space
   bool visible_only = false;  ///< such a drawing has no photograph
   std::optional<double> yaw_deg = {}, pitch_deg = {};  ///< the object's own when absent

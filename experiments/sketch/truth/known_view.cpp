@@ -318,7 +318,7 @@ SyntheticView known_view(const KnownObject& object, bool visible_only) {
   return KnownDrawing(object, visible_only).draw();
 }
 
-void add_drawing_noise(View& view, double spread, std::uint64_t seed) {
+void add_drawing_noise(View& view, double spread, std::uint64_t seed, bool noisy_vectors) {
   constexpr double kShort = 8;     // spreads, below which both ends of a pair are one mark
   constexpr double kMeet = 0.001;  // of the diagonal, within which ends of borders are one corner
   Eigen::AlignedBox2d box;
@@ -326,7 +326,7 @@ void add_drawing_noise(View& view, double spread, std::uint64_t seed) {
     for (const Eigen::Vector2d& p : stroke.points) box.extend(p);
   std::vector<std::array<Eigen::Vector2d, 2>> corners;  // place and where it went
   for (Stroke& stroke : view.strokes) {
-    if (stroke.kind == StrokeKind::plane_vector) continue;
+    if (stroke.kind == StrokeKind::plane_vector && !noisy_vectors) continue;
     RandomStream random(seed, "drawing of " + stroke.id);
     const auto move = [&]() -> Eigen::Vector2d {
       const double dx = spread * random.normal();

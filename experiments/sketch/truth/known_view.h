@@ -47,8 +47,8 @@ SyntheticView known_view(const KnownObject& object, bool visible_only = false);
 
 /// Moves every drawn point by normal noise. Each stroke has random numbers of its own; a tick moves
 /// as a whole, ends of borders that meet move together (drawing programs snap them), and plane
-/// vectors stay.
+/// vectors stay unless they are noisy too.
 /// @param spread  standard deviation of either coordinate (m)
-void add_drawing_noise(View& view, double spread, std::uint64_t seed);
+void add_drawing_noise(View& view, double spread, std::uint64_t seed, bool noisy_vectors = false);
 
 }  // namespace geoprior::sketch
