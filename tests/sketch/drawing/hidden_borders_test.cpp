@@ -47,6 +47,21 @@ TEST(ParallelCopies, AreFoundFromAPartOfThem) {
   EXPECT_LT(copy->rms, 1e-4);
 }
 
+// Borders of a cylinder are of one size: 2 % of scale, a hundredth of the ellipse's width, may be
+// noise of that size, and 40 % cannot.
+TEST(ParallelCopies, AreOfOneSizeWhereNoiseExplainsTheDifference) {
+  const PictureCurve whole = ellipse(1, 0.4, 200);
+  const auto scale = [&](double real, double noise) {
+    std::vector<Eigen::Vector2d> seen;
+    for (int k = 100; k < 167; ++k)
+      seen.emplace_back(real * whole.points[k] + Eigen::Vector2d(0.1, 0.8));
+    return fit_parallel_copy(whole, seen, {}, noise).value().scale;
+  };
+  EXPECT_EQ(scale(0.98, 0.01), 1);
+  EXPECT_NEAR(scale(0.98, 0), 0.98, 1e-3);
+  EXPECT_NEAR(scale(0.6, 0.01), 0.6, 1e-3);
+}
+
 // Every scale fits a straight part of a border.
 TEST(ParallelCopies, AreOpenWhereAStraightPartIsSeen) {
   const PictureCurve whole{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, false};
@@ -309,6 +324,27 @@ TEST(OneViewNoise, FrustumOfOnePercentKeepsItsArea) {
     const OneViewResult result = rough_result(drawing);
     EXPECT_NEAR(result.noise, 0.01 * height, 0.002 * height) << seed;
     EXPECT_LT(area_error(drawing, result), 0.03) << seed;
+  }
+}
+
+// From 20 to 45 degrees above, with the usual options.
+TEST(HiddenBorders, ObjectsAreRightFromManySides) {
+  for (const KnownShape shape : {KnownShape::bag, KnownShape::tent, KnownShape::helmet}) {
+    for (const double pitch : {20.0, 45.0}) {
+      const SyntheticView drawing = visible(shape, 35, pitch);
+      const OneViewResult result = reconstruct_one_view(drawing.view, {});
+      EXPECT_LT(area_error(drawing, result), 0.02) << known_name(shape) << " " << pitch;
+    }
+  }
+}
+
+// A seed on which nothing was set.
+TEST(OneViewNoise, ObjectsOfOnePercentKeepTheirArea) {
+  for (const KnownShape shape : {KnownShape::bag, KnownShape::tent, KnownShape::helmet}) {
+    SyntheticView drawing = known_view(shown_object({.shape = shape}), true);
+    add_drawing_noise(drawing.view, 0.01 * drawing.height, 101);
+    EXPECT_LT(area_error(drawing, reconstruct_one_view(drawing.view, {})), 0.04)
+        << known_name(shape);
   }
 }
 

@@ -19,7 +19,6 @@
 namespace geoprior::sketch {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 /// Circular cone about y of slant 1, its apex at the top; `sine` of the angle between axis and
 /// side.
@@ -32,7 +31,7 @@ TriMesh cone(double sine, int segments, int rows) {
   for (int j = 1; j <= rows; ++j) {
     const double s = static_cast<double>(j) / rows;
     for (int i = 0; i < segments; ++i) {
-      const double a = 2 * kPi * i / segments;
+      const double a = 2 * std::numbers::pi * i / segments;
       mesh.V.row(1 + (j - 1) * segments + i) << s * sine * std::sin(a), (1 - s) * height,
           s * sine * std::cos(a);
     }
@@ -278,7 +277,7 @@ TEST(SuggestSeams, WhatIsDevelopableWantsNone) {
 // is laid flat.
 TEST(SuggestSeams, WhatLiesOnItselfIsCutApart) {
   const TriMesh strip = flats::grid(90, 6, [](int i, int j) {
-    const double turn = 2.6 * kPi * i / 90, radius = 1 - 0.05 * j;
+    const double turn = 2.6 * std::numbers::pi * i / 90, radius = 1 - 0.05 * j;
     return Eigen::Vector3d(radius * std::cos(turn), radius * std::sin(turn), 0.01 * turn);
   });
   const auto overlaps = [](const SeamedSurface& surface) {

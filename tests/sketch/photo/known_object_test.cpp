@@ -133,7 +133,19 @@ TEST(KnownViews, OcclusionsMarkWhatLiesBehind) {
   EXPECT_FALSE(has("front-outline-hidden-1"));
 }
 
-// Noise has the spread that is asked for, and plane vectors none.
+// The rear end of the flap is seen by nobody. The room of the tent is whole: where its arches stand
+// behind it, that of the door says how far they go.
+TEST(KnownViews, AreasEndWhereNoBorderShowsThem) {
+  const auto shown = [](KnownShape shape, const std::string& panel, bool visible_only) {
+    return known_view(known_object(shape), visible_only).panel_areas.at(panel);
+  };
+  EXPECT_LT(shown(KnownShape::bag, "flap", true), 0.95 * shown(KnownShape::bag, "flap", false));
+  EXPECT_EQ(shown(KnownShape::bag, "gusset", true), shown(KnownShape::bag, "gusset", false));
+  EXPECT_EQ(shown(KnownShape::tent, "room", true), shown(KnownShape::tent, "room", false));
+  EXPECT_EQ(shown(KnownShape::frustum, "shade", true), shown(KnownShape::frustum, "shade", false));
+}
+
+// Noise has the spread that is asked for, and plane vectors none unless they are noisy too.
 TEST(KnownViews, NoiseHasItsSpread) {
   SyntheticView noisy = known_view(known_object(KnownShape::helmet));
   const SyntheticView exact = noisy;
@@ -152,6 +164,12 @@ TEST(KnownViews, NoiseHasItsSpread) {
     }
   }
   EXPECT_NEAR(std::sqrt(sum / count), 0.001, 5e-5);
+  noisy = exact;
+  add_drawing_noise(noisy.view, 0.001, 3, true);
+  for (std::size_t s = 0; s < exact.view.strokes.size(); ++s) {
+    if (exact.view.strokes[s].kind != StrokeKind::plane_vector) continue;
+    EXPECT_GT((noisy.view.strokes[s].points[1] - exact.view.strokes[s].points[1]).norm(), 0);
+  }
 }
 
 // The photograph beside the experiment is that of the model. A run of a scene with `known` and
