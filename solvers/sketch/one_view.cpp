@@ -13,6 +13,7 @@
 #include "solvers/sketch/drawing/dense_matches.h"
 #include "solvers/sketch/drawing/faired_borders.h"
 #include "solvers/sketch/drawing/symmetric_pairs.h"
+#include "solvers/sketch/drawing/unpaired_borders.h"
 #include "solvers/sketch/surface/fair_patch.h"
 #include "solvers/sketch/surface/ruled_patches.h"
 
@@ -326,6 +327,28 @@ double least_width(const std::vector<Eigen::Vector2d>& points) {
   return high - low;
 }
 
+/// Which borders have a depth that no symmetry tells, in a sentence; empty when there is none, and
+/// of a drawing that is refused.
+std::string pairs_note(const View& view, const MirrorPlane& plane, double noise,
+                       const OneViewOptions& options) {
+  std::vector<std::string> ids;
+  try {
+    const CurveNet net = build_curve_net(view, options.curves);
+    const std::vector<SymmetricPair> pairs =
+        read_symmetric_pairs(view, net, plane, options.pair_tolerance, noise);
+    ids = unpaired_borders(
+        net, pairs, dense_matches(net, pairs, plane, options.depth.tangent_half_width));
+  } catch (const Error&) {
+    return "";  // the reconstruction says why
+  }
+  std::string text;
+  for (const std::string& id : ids) text += (text.empty() ? "'" : ", '") + id + "'";
+  if (text.empty()) return text;
+  return "no symmetric pair ends on " + text +
+         ": how far away it lies follows from rulings alone, and may be wrong by the object's own "
+         "size; draw a pair on it, or a mark where it crosses the mirror plane";
+}
+
 /// Which panels are too narrow for the noise, in a sentence; empty when none is.
 std::string noise_note(const FairedView& faired) {
   std::map<std::string, std::vector<Eigen::Vector2d>> borders;
@@ -419,14 +442,15 @@ OneViewResult reconstruct_one_view(const View& drawn, const OneViewOptions& aske
   return result;
 }
 
-std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& options) {
+std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& asked) {
   if (view.kind != ViewKind::photo) return {};
-  const FairedView faired = faired_view(view, options);
+  const FairedView faired = faired_view(view, asked);
+  const MirrorPlane plane = drawn_mirror_planes(view, asked.vector_ratio).chosen;
+  const CompletedView completed = complete_borders(faired.view, plane, asked.curves.snap,
+                                                   asked.complete, faired.noise);
   std::vector<std::string> notes{
-      completion_note(complete_borders(faired.view,
-                                       drawn_mirror_planes(view, options.vector_ratio).chosen,
-                                       options.curves.snap, options.complete, faired.noise)),
-      noise_note(faired)};
+      completion_note(completed), noise_note(faired),
+      pairs_note(completed.view, plane, faired.noise, fit_for_noise(asked, faired))};
   std::erase(notes, "");
   return notes;
 }

@@ -95,9 +95,9 @@ struct OneViewResult {
 /// @throws Error  on anything that the steps refuse, with the ids of strokes
 OneViewResult reconstruct_one_view(const View& view, const OneViewOptions& options);
 
-/// A sentence each on what was guessed of hidden borders, and on panels that are drawn narrower
-/// than thirty deviations of the noise, whose sizes are then not sure; none when there is nothing
-/// to say.
+/// A sentence each on what was guessed of hidden borders, on panels that are drawn narrower than
+/// thirty deviations of the noise, whose sizes are then not sure, and on borders whose depth no
+/// symmetry tells (`unpaired_borders`); none when there is nothing to say.
 std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& options);
 
 }  // namespace geoprior::sketch

@@ -15,6 +15,7 @@
 #include "experiments/sketch/measures.h"
 #include "experiments/sketch/truth/known_drawing.h"
 #include "experiments/sketch/truth/known_view.h"
+#include "experiments/sketch/truth/synthetic_views.h"
 #include "solvers/sketch/drawing/border_models.h"
 #include "solvers/sketch/drawing/faired_borders.h"
 #include "solvers/sketch/one_view.h"
@@ -355,6 +356,19 @@ TEST(OneViewNoise, NarrowPanelsAreNamed) {
   add_drawing_noise(drawing.view, 0.01 * drawing.height, 101);
   EXPECT_THAT(notes(),
               testing::Contains(testing::AllOf(HasSubstr("relied upon"), HasSubstr("'flat-tip'"))));
+}
+
+// Of a rim without a pair rulings tell the shape, but not how far away it lies.
+TEST(OneViewNotes, NameBordersWithoutAPair) {
+  SyntheticViewOptions options;
+  EXPECT_THAT(one_view_notes(synthetic_view(options).view, {}), IsEmpty());
+  options.upper_point = false;
+  EXPECT_THAT(one_view_notes(synthetic_view(options).view, {}),
+              testing::ElementsAre(HasSubstr("no symmetric pair ends on 'top'")));
+  for (const KnownShape shape : {KnownShape::bag, KnownShape::tent, KnownShape::helmet}) {
+    EXPECT_THAT(one_view_notes(known_view(shown_object({.shape = shape})).view, {}), IsEmpty())
+        << known_name(shape);
+  }
 }
 
 // Ends are moved along their borders by noise: a pair of a trembling drawing slides to where it

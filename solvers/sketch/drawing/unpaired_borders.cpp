@@ -1,0 +1,56 @@
+#include "solvers/sketch/drawing/unpaired_borders.h"
+
+#include <algorithm>
+
+namespace geoprior::sketch {
+namespace {
+
+bool is_flat(const std::string& panel) { return panel.rfind("flat", 0) == 0; }
+
+bool in_one_flat_panel(const SketchCurve& a, const SketchCurve& b) {
+  return std::any_of(a.panels.begin(), a.panels.end(), [&](const std::string& name) {
+    return is_flat(name) && std::find(b.panels.begin(), b.panels.end(), name) != b.panels.end();
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> unpaired_borders(const CurveNet& net,
+                                          const std::vector<SymmetricPair>& pairs,
+                                          const std::vector<DenseMatch>& matches) {
+  std::vector<bool> told(net.points.size(), false);  // nodes of borders whose depth is told
+  std::vector<bool> paired(net.curves.size(), false);
+  const auto tell = [&](int c) {
+    paired[c] = true;
+    for (const int node : net.curves[c].nodes) told[node] = true;
+  };
+  for (const SymmetricPair& pair : pairs) {
+    for (const auto* places : {&pair.point_at, &pair.image_at})
+      for (const CurvePoint& place : *places) tell(place.curve);
+  }
+  for (const DenseMatch& match : matches) tell(match.image.curve);
+  const int count = static_cast<int>(net.curves.size());
+  const auto follows = [&](int c) {
+    const SketchCurve& curve = net.curves[c];
+    if (!curve.closed && told[curve.nodes.front()] && told[curve.nodes.back()]) return true;
+    for (int other = 0; other < count; ++other)
+      if (paired[other] && in_one_flat_panel(curve, net.curves[other])) return true;
+    return false;
+  };
+  for (bool more = true; more;) {
+    more = false;
+    for (int c = 0; c < count; ++c) {
+      if (paired[c] || !follows(c)) continue;
+      tell(c);
+      more = true;
+    }
+  }
+  std::vector<std::string> ids;
+  for (int c = 0; c < count; ++c) {
+    const std::string& id = net.curves[c].id;
+    if (!paired[c] && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace geoprior::sketch
