@@ -36,6 +36,9 @@ constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
                                            {0.869, 0.378, 0.301},
                                            {0.706, 0.016, 0.150}}};
 
+/// Range of a number without a unit, a stretch or a share, below which colours would tell roundings.
+constexpr double kLeastShare = 1e-4;
+
 /// Of lines of the first class, which would not be seen on the page in the tone of the material.
 constexpr Color kInk{0.2, 0.2, 0.2};
 
@@ -150,6 +153,10 @@ ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::st
     const double reach = std::max(scale.high - center, center - scale.low);
     scale.low = center - reach;
     scale.high = center + reach;
+  }
+  if (scale.unit == "1" && scale.high - scale.low < kLeastShare) {
+    if (scale.diverging) scale.low = center - kLeastShare / 2;
+    scale.high = scale.low + kLeastShare;
   }
   if (!(scale.high > scale.low)) {  // a constant array still needs a bar
     const double pad = std::max(std::abs(scale.low), 1.0) * 1e-3;

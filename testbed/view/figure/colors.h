@@ -43,7 +43,8 @@ struct ColorScale {
 Eigen::VectorXd scalars(const NamedArray& array);
 
 /// Range of the values of all parts drawn: 0.5 … 99.5 percentiles, so that a few extreme elements
-/// do not take all the colours; symmetric about 0 (signed values) or 1 (ratios).
+/// do not take all the colours; symmetric about 0 (signed values) or 1 (ratios); of numbers without
+/// a unit at least 1e-4 wide, so that roundings have no colours.
 /// @throws Error  when no part has the array, listing the arrays there are
 ColorScale make_color_scale(const std::vector<const Part*>& parts, const std::string& name);
 

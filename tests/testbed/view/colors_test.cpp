@@ -38,6 +38,17 @@ TEST(ColorScale, SignedValuesAreSymmetricAboutZeroAndRatiosAboutOne) {
   EXPECT_DOUBLE_EQ(about_one.high, 1.5);
 }
 
+// A pattern without stretch is pale, not red by its roundings; lengths may be as small as they like.
+TEST(ColorScale, RoundingsOfNumbersWithoutAUnitHaveNoColours) {
+  Part part = with_values("stretch", Eigen::VectorXd::LinSpaced(8, -3e-9, 5e-9));
+  EXPECT_DOUBLE_EQ(make_color_scale({&part}, "stretch").high, 5e-9);
+  part.arrays.back().unit = "1";
+  EXPECT_DOUBLE_EQ(make_color_scale({&part}, "stretch").low, -5e-5);
+  EXPECT_DOUBLE_EQ(make_color_scale({&part}, "stretch").high, 5e-5);
+  part.arrays.back().values.array() += 1e-8;
+  EXPECT_NEAR(make_color_scale({&part}, "stretch").high, 1e-4, 1e-7);
+}
+
 TEST(ColorScale, OneRangeForAllPartsAndUnknownArrayNamesTheOnesThereAre) {
   const Part a = with_values("height", Eigen::VectorXd::LinSpaced(8, 1, 2));
   const Part b = with_values("height", Eigen::VectorXd::LinSpaced(8, 3, 7));
