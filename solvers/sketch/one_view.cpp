@@ -39,9 +39,9 @@ constexpr double kClearRatio = 3;
 constexpr double kSnapNoise = 3;
 /// Deviations of the noise below which a panel is too narrow to be sure of.
 constexpr double kNarrowPanel = 30;
-/// Noise over the diagonal, beyond which a drawn point is not as good as exact; and by how much less
-/// it is then held at most: a tenth of that leaves more depth wrong in ten drawings each of four
-/// objects, ten times that lets panels fold.
+/// Noise over the diagonal at which a drawn point is held half as much as in an exact drawing; and
+/// by how much less it is held at most: a tenth of that leaves more depth wrong in ten drawings
+/// each of four objects, ten times that lets panels fold.
 constexpr double kSureShare = 1e-4;
 constexpr double kMostFreedom = 14;
 /// What an end of a pair misses in a drawing without noise, over the diagonal.
@@ -299,8 +299,8 @@ FairedView faired_view(const View& view, const OneViewOptions& options) {
 }
 
 /// Ends meet within what noise moves them by; a pair counts less the less its ends are sure, beside
-/// matches, which are as sure as faired borders; and refined points are held less to where they were
-/// drawn.
+/// matches, which are as sure as faired borders; and refined points are held less to where they
+/// were drawn.
 OneViewOptions fit_for_noise(OneViewOptions options, const FairedView& faired) {
   if (!(faired.noise > 0)) return options;
   const double share = faired.noise / faired.diagonal;
@@ -336,8 +336,7 @@ std::string pairs_note(const View& view, const MirrorPlane& plane, double noise,
     const CurveNet net = build_curve_net(view, options.curves);
     const std::vector<SymmetricPair> pairs =
         read_symmetric_pairs(view, net, plane, options.pair_tolerance, noise);
-    ids = unpaired_borders(
-        net, pairs, dense_matches(net, pairs, plane, options.depth.tangent_half_width));
+    ids = unpaired_borders(view, net, pairs);
   } catch (const Error&) {
     return "";  // the reconstruction says why
   }
@@ -446,8 +445,8 @@ std::vector<std::string> one_view_notes(const View& view, const OneViewOptions& 
   if (view.kind != ViewKind::photo) return {};
   const FairedView faired = faired_view(view, asked);
   const MirrorPlane plane = drawn_mirror_planes(view, asked.vector_ratio).chosen;
-  const CompletedView completed = complete_borders(faired.view, plane, asked.curves.snap,
-                                                   asked.complete, faired.noise);
+  const CompletedView completed =
+      complete_borders(faired.view, plane, asked.curves.snap, asked.complete, faired.noise);
   std::vector<std::string> notes{
       completion_note(completed), noise_note(faired),
       pairs_note(completed.view, plane, faired.noise, fit_for_noise(asked, faired))};

@@ -225,7 +225,8 @@ std::vector<const KnownPanel*> KnownDrawing::row_of(const KnownPanel& panel) con
 /// A ruled panel up to the last places where a border of its row of panels is seen: how far an open
 /// row goes on where all are hidden, no drawing of visible borders tells.
 KnownPanel KnownDrawing::shown_part(const KnownPanel& panel) const {
-  if (!visible_only_ || panel.flat || panel.first.front() == panel.first.back()) return panel;
+  const bool closed = (panel.first.front() - panel.first.back()).norm() < 1e-9 * object_.height;
+  if (!visible_only_ || panel.flat || closed) return panel;
   const std::vector<const KnownPanel*> row = row_of(panel);
   const auto is_shown = [&](std::size_t k) {
     return std::any_of(row.begin(), row.end(), [&](const KnownPanel* p) {
@@ -271,7 +272,9 @@ SyntheticView KnownDrawing::draw() {
   draw_borders();
   for (const KnownPanel& panel : object_.panels) {
     if (!panel.flat) draw_rulings(panel);
-    const TriMesh mesh = panel_mesh(shown_part(panel));
+    const KnownPanel shown = shown_part(panel);
+    if (shown.first.size() < 2) continue;  // hidden whole
+    const TriMesh mesh = panel_mesh(shown);
     out_.panel_areas[panel.name] = triangle_areas(mesh.V, mesh.F).sum();
   }
   draw_pairs();

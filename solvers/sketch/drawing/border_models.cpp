@@ -44,8 +44,9 @@ struct CopyRows {
   }
 };
 
-/// Of the noise: a copy of the original's size that fits worse by less, root mean square, is as good.
-constexpr double kSameSize = 1.25;
+/// Of the noise: a copy of the original's size that fits worse by less, root mean square, is as
+/// good.
+constexpr double kSameSize = 1;
 
 /// Fits in a frame in which what is seen has mean 0 and extent 1.
 class CopyFit {

@@ -270,7 +270,15 @@ bool holds(const SketchCurve& curve, int node) {
   return std::find(curve.nodes.begin(), curve.nodes.end(), node) != curve.nodes.end();
 }
 
-/// Strokes that a drawn ruling joins, the lower number first: two sides of one panel, which lie apart.
+/// Whether an occlusion runs by.
+bool is_marked_hidden(const View& view, const Eigen::Vector2d& p, double reach) {
+  return std::any_of(view.strokes.begin(), view.strokes.end(), [&](const Stroke& stroke) {
+    return stroke.kind == StrokeKind::occlusion && distance_to_stroke(p, stroke) <= reach;
+  });
+}
+
+/// Strokes that a drawn ruling joins, the lower number first: two sides of one panel, which lie
+/// apart. Not curves, of which a trembling stroke may be several.
 std::set<std::pair<int, int>> opposite_borders(const View& view, const CurveNet& net) {
   std::set<std::pair<int, int>> opposite;
   for (const Stroke& stroke : view.strokes) {
@@ -286,8 +294,9 @@ std::set<std::pair<int, int>> opposite_borders(const View& view, const CurveNet&
 /// Joins free ends that touch the inside of another curve to its nearest node.
 void weld_touching_ends(const View& view, CurveNet& net) {
   const std::set<std::pair<int, int>> opposite = opposite_borders(view, net);
-  const auto can_meet = [&](const SketchCurve& a, const SketchCurve& b) {
-    return may_meet(a.panels, b.panels) && !opposite.contains(std::minmax(a.stroke, b.stroke));
+  const auto can_meet = [&](const SketchCurve& a, const SketchCurve& b, double within) {
+    return may_meet(a.panels, b.panels) && (within <= kTouches * net.snap || a.stroke == b.stroke ||
+                                            !opposite.contains(std::minmax(a.stroke, b.stroke)));
   };
   for (int c = 0; c < std::ssize(net.curves); ++c) {
     if (net.curves[c].closed) continue;
@@ -296,11 +305,15 @@ void weld_touching_ends(const View& view, CurveNet& net) {
       int users = 0;
       for (const SketchCurve& curve : net.curves) users += holds(curve, end) ? 1 : 0;
       if (users > 1) continue;
+      // A hidden end that seems to touch passes behind.
+      const bool hidden = is_marked_hidden(view, net.points[end], net.snap / 2);
       NearestOnNet near{{}, net.snap};
       for (int other = 0; other < std::ssize(net.curves); ++other) {
-        if (other == c || !can_meet(net.curves[c], net.curves[other])) continue;
+        if (other == c) continue;
         const NearestOnNet place = nearest_on_curve(net, other, net.points[end]);
-        if (place.distance < near.distance) near = place;
+        if (place.distance < near.distance &&
+            can_meet(net.curves[c], net.curves[other], hidden ? net.snap : place.distance))
+          near = place;
       }
       if (near.place.curve < 0) continue;
       const SketchCurve& other = net.curves[near.place.curve];
@@ -325,14 +338,9 @@ void drop_unused_nodes(CurveNet& net) {
   net.points = std::move(kept);
 }
 
-/// Nodes along an occlusion.
 void mark_hidden(const View& view, CurveNet& net) {
-  net.hidden.assign(net.points.size(), false);
-  for (const Stroke* occlusion : strokes_of(view, StrokeKind::occlusion)) {
-    for (std::size_t v = 0; v < net.points.size(); ++v) {
-      if (distance_to_stroke(net.points[v], *occlusion) <= net.snap / 2) net.hidden[v] = true;
-    }
-  }
+  for (const Eigen::Vector2d& p : net.points)
+    net.hidden.push_back(is_marked_hidden(view, p, net.snap / 2));
 }
 
 }  // namespace

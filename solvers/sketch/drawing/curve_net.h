@@ -38,6 +38,10 @@ struct CurvePoint {
   double at = 0;
 };
 
+/// Of the snapping distance: nearer, even opposite sides of a panel touch, as at the tips of a
+/// visor.
+inline constexpr double kTouches = 0.1;
+
 /// All borders of a view.
 struct CurveNet {
   std::vector<Eigen::Vector2d> points;  ///< of the nodes, in the view (m)
@@ -49,12 +53,13 @@ struct CurveNet {
 };
 
 /// Borders and occlusions of a view as curves: strokes are cut at corners (a vertex that turns by
-/// more than `corner_deg` between two chords of more than three spacings each), ends that lie
+/// more than 40 degrees between two chords of more than three spacings each), ends that lie
 /// within `snap` of each other become one node, an end within `snap` of the inside of another curve
 /// becomes that curve's nearest node unless they name panels and have none in common, or a drawn
-/// ruling joins them (one merely covers the other then), and a stroke whose two ends meet each other only, without a
-/// corner, is closed. An occlusion that runs along a border (to `snap`, root mean
-/// square) marks the part of it that something hides; another one is a border that is hidden whole.
+/// ruling joins the two strokes and the end does not touch, or is hidden (one merely covers the
+/// other then), and a stroke whose two ends meet each other only, without a corner, is closed. An
+/// occlusion that runs along a border (to `snap`, root mean square) marks the part of it that
+/// something hides; another one is a border that is hidden whole.
 ///
 /// @throws Error  when no border is drawn, or a stroke has no length (names it)
 CurveNet build_curve_net(const View& view, const CurveNetOptions& options);

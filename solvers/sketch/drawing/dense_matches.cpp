@@ -48,9 +48,9 @@ class StretchMatcher {
   [[nodiscard]] bool crosses_plane(int curve, double at) const {
     return std::abs(slope(curve, static_cast<int>(std::lround(at)))) < least_slope_;
   }
-  /// Whether a stretch runs along the normal's image as a whole, as the sill of a door does, so that
-  /// what u has of slopes is noise.
-  [[nodiscard]] bool runs_along_normal(int curve, const MatchedStretch& stretch) const;
+  /// Whether a stretch runs along the normal's image as a whole, as the sill of a door does, so
+  /// that what u has of slopes is noise.
+  [[nodiscard]] bool runs_along_normal(int curve, double from, double to) const;
   /// Mean distance in u of proportional places: small for the right way round a closed border.
   [[nodiscard]] double mismatch(int first, int second, const MatchedStretch& stretch) const;
 
@@ -118,8 +118,8 @@ void StretchMatcher::match(int first, int second, const MatchedStretch& stretch,
   }
 }
 
-bool StretchMatcher::runs_along_normal(int curve, const MatchedStretch& stretch) const {
-  const auto [begin, end] = std::minmax(stretch.begin, stretch.end);
+bool StretchMatcher::runs_along_normal(int curve, double from, double to) const {
+  const auto [begin, end] = std::minmax(from, to);
   double low = u_at(curve, begin), high = low;
   for (double at = std::floor(begin) + 1; at < end; at += 1) {
     low = std::min(low, u_at(curve, at));
@@ -255,7 +255,9 @@ std::vector<DenseMatch> dense_matches(const CurveNet& net, const std::vector<Sym
           stretches.push_back(s);
       }
       for (const MatchedStretch& s : stretches)
-        if (!matcher.runs_along_normal(a, s)) matcher.match(a, b, s, matches);
+        if (!matcher.runs_along_normal(a, s.begin, s.end) &&
+            !matcher.runs_along_normal(b, s.image_begin, s.image_end))
+          matcher.match(a, b, s, matches);
     }
   }
   return matches;

@@ -208,8 +208,12 @@ bool BorderCompletion::lies_on(const PartialBorder& border, const Stroke& pair) 
 bool BorderCompletion::joins(const PartialBorder& a, const PartialBorder& b,
                              const Stroke& pair) const {
   const Eigen::Vector2d &front = pair.points.front(), &back = pair.points.back();
-  return (end_lies_on(a, pair, front) && end_lies_on(b, pair, back)) ||
-         (end_lies_on(b, pair, front) && end_lies_on(a, pair, back));
+  const auto from_to = [&](const PartialBorder& from, const PartialBorder& to) {
+    return end_lies_on(from, pair, front) && end_lies_on(to, pair, back) &&
+           distance_to(from, front) < distance_to(to, front) &&
+           distance_to(to, back) < distance_to(from, back);
+  };
+  return from_to(a, b) || from_to(b, a);
 }
 
 /// The copy of a border that is its own mirror image is so too, in the same plane: pairs of one are

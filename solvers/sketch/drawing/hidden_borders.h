@@ -43,25 +43,24 @@ struct CompletedView {
 /// Completes the borders of a drawing that shows only what can be seen (thesis 2.1.3).
 ///
 /// A drawing with strokes of kind occlusion says itself what is hidden, and is left as it is; so is
-/// one in which no border ends where another stroke covers it. Otherwise:
+/// one in which nothing is guessed. Otherwise:
 ///
-/// 1. Stretches of one border are put together: of the same panels, and either named alike ("rim",
-///    "rim-2") or meeting smoothly. Beside others, a stretch that reaches less far than four
-///    deviations of the noise is left out, unless the border really ends with it.
+/// 1. Stretches of one border are put together (`seen_borders`).
 /// 2. What a border lacks comes from a whole border that a drawn ruling joins it to, as its
 ///    parallel copy (`ParallelCopy`: parts of cones and cylinders are bounded by parallel planes,
 ///    thesis 2.1.3); that includes the ellipse of a circular rim from that of a visible one. What
 ///    is seen of a rim that is smaller than its neighbour, and on the copy but for noise, is put
 ///    there. Its pairs come along where none is drawn.
 /// 3. A rim whose ends are both covered, and which is seen for more than five ninths of an ellipse
-///    or between the silhouettes of its own panel, goes round: the ellipse through what is seen.
-///    Its pairs would say where it is symmetric, but their ends are single points: with noise they
-///    lead astray.
+///    or for 130 degrees of it between the silhouettes of its own panel, goes round: the ellipse
+///    through what is seen. Its pairs would say where it is symmetric, but their ends are single
+///    points: with noise they lead astray.
 /// 4. A border with two pairs is continued by its mirror image.
 /// 5. Stretches that are still apart are joined by a cubic; a flat panel whose borders are still no
 ///    loop is closed by a straight line.
 ///
-/// Guesses agree with what is seen to two snapping distances, or are not made. Whatever is guessed
+/// Guesses agree with what is seen to two snapping distances, or are not made; a border is
+/// continued by more than one snapping distance, or not. Whatever is guessed
 /// is marked by an occlusion in the result. It cannot guess what neither a visible neighbour nor
 /// symmetry shows: such ends stay, and are listed.
 ///
@@ -70,12 +69,11 @@ struct CompletedView {
 ///
 /// @param snap   share of the drawing's diagonal within which ends meet
 /// @param noise  standard deviation of a drawn coordinate (m): ends meet within three of it too,
-/// and
-///               borders are copies to two of it
+///               and borders are copies to two of it
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
                                Completion completion, double noise = 0);
 
-/// One sentence on what was guessed; empty when nothing was and no end is left.
+/// One sentence on what was guessed; empty when nothing was.
 std::string completion_note(const CompletedView& completed);
 
 }  // namespace geoprior::sketch

@@ -7,6 +7,7 @@
 
 #include "core/angles.h"
 #include "core/geometry/planar.h"
+#include "solvers/sketch/drawing/curve_net.h"
 #include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
@@ -56,12 +57,18 @@ class BorderReader {
   SeenBorders& seen_;
 };
 
-/// Whether drawn rulings join borders of these panels: two sides of one panel, which lie apart.
+/// Whether a drawn ruling joins stretches of these borders: two sides of one panel, which lie
+/// apart.
 bool BorderReader::are_opposite(const PartialBorder& a, const PartialBorder& b) const {
+  const auto of_one_border = [&](const PartialBorder& p, const PartialBorder& q) {
+    return p.panels == q.panels &&
+           name_of_border(view_.strokes[p.stroke].id) == name_of_border(view_.strokes[q.stroke].id);
+  };
   return std::any_of(seen_.rulings.begin(), seen_.rulings.end(), [&](const BorderRuling& ruling) {
-    const auto &first = seen_.borders[ruling.border[0]].panels,
-               &second = seen_.borders[ruling.border[1]].panels;
-    return (first == a.panels && second == b.panels) || (first == b.panels && second == a.panels);
+    const PartialBorder& first = seen_.borders[ruling.border[0]];
+    const PartialBorder& second = seen_.borders[ruling.border[1]];
+    return (of_one_border(first, a) && of_one_border(second, b)) ||
+           (of_one_border(first, b) && of_one_border(second, a));
   });
 }
 
@@ -71,13 +78,12 @@ bool BorderReader::is_covered(const PartialBorder& own, const Eigen::Vector2d& e
                               const Eigen::Vector2d& other_end) const {
   const double reach = kCoverReach * seen_.snap;
   for (const PartialBorder& other : seen_.borders) {
-    if (&other == &own || other.closed || !may_meet(own.panels, other.panels) ||
-        are_opposite(own, other))
+    if (&other == &own || other.closed || other.panels == own.panels ||
+        !may_meet(own.panels, other.panels))
       continue;
+    const double joint = are_opposite(own, other) ? kTouches * seen_.snap : seen_.snap;
     for (const Eigen::Vector2d& p : {other.stretches[0].front().p, other.stretches[0].back().p})
-      if ((p - end).norm() <= std::min(seen_.snap, (p - other_end).norm()) &&
-          other.panels != own.panels)
-        return false;
+      if ((p - end).norm() <= std::min(joint, (p - other_end).norm())) return false;
   }
   for (const PartialBorder& other : seen_.borders)
     if (&other != &own && distance_to(other, end) <= reach) return true;
@@ -173,7 +179,7 @@ void BorderReader::drop_crumbs() {
   }
 }
 
-/// The rulings whose ends lie on two borders; of the panel that a ruling names when both name it.
+/// The rulings whose ends lie on two borders of the panel that they name, if they name one.
 void BorderReader::find_rulings() {
   seen_.rulings.clear();
   for (const Stroke& stroke : view_.strokes) {

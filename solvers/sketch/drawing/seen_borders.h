@@ -50,7 +50,8 @@ SeenBorders borders_as_drawn(const View& view, double snap, double noise);
 /// Stretches of one border put together: of the same panels, and either named alike ("rim",
 /// "rim-2") or meeting smoothly, where something covers both their ends. Something covers an end
 /// that lies on another border or on a silhouette, and meets no end of a border of a panel of its
-/// own there; sides of one panel, which a ruling joins, do not meet. Beside others, a stretch that
+/// own there; sides of one panel, which a ruling joins, meet
+/// only where their ends touch. Beside others, a stretch that
 /// reaches less far than four deviations of the noise is left out, unless the border ends with it.
 SeenBorders seen_borders(const View& view, double snap, double noise);
 

@@ -168,22 +168,38 @@ DrawnPair drawn_pair(const Stroke& stroke, const CurveNet& net, const MirrorPlan
           borders_of_ends(net, borders_for_pair(net, stroke), pair, plane, where)};
 }
 
+/// The border that pairs of the same panels say is the image of a border on which one pair has both
+/// its ends: two of them at least, and more than there are for any other. -1: there is none, or a
+/// point of the plane says that the border is its own image.
+int image_by_votes(const std::vector<DrawnPair>& pairs, const DrawnPair& drawn) {
+  const int curve = drawn.ends[0].curve;
+  std::map<int, int> votes;
+  for (const DrawnPair& other : pairs) {
+    const auto [a, b] = other.borders();
+    if (&other == &drawn || other.panels != drawn.panels || (a != curve && b != curve)) continue;
+    if (other.pair.in_plane) return -1;
+    ++votes[a == curve ? b : a];
+  }
+  int image = -1, most = kVotes - 1;
+  for (const auto& [border, count] : votes) {
+    if (count == most) image = -1;
+    if (count <= most) continue;
+    most = count;
+    image = border;
+  }
+  return image == curve ? -1 : image;
+}
+
 /// Where two borders are each other's image a pair of the same panels joins them, too, although
-/// noise put both its ends onto one: a border has one image.
+/// both its ends were drawn nearer to one: a border has one image.
 void join_as_others(std::vector<DrawnPair>& pairs, const CurveNet& net) {
-  for (DrawnPair& drawn : pairs) {
+  const std::vector<DrawnPair> as_drawn = pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    DrawnPair& drawn = pairs[p];
     const auto [curve, same] = drawn.borders();
     if (curve != same || drawn.pair.in_plane) continue;
-    std::map<int, int> votes;  // for a border as the image of this one
-    for (const DrawnPair& other : pairs) {
-      const auto [a, b] = other.borders();
-      if (&other == &drawn || other.panels != drawn.panels || (a != curve && b != curve)) continue;
-      ++votes[a == curve ? b : a];
-    }
-    const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    });
-    if (most == votes.end() || most->first == curve || most->second < kVotes) continue;
+    const int image = image_by_votes(as_drawn, as_drawn[p]);
+    if (image < 0) continue;
     const auto ends_on = [&](int first, int second) {
       return std::array<NearestOnNet, 2>{nearest_on_curve(net, first, drawn.pair.point),
                                          nearest_on_curve(net, second, drawn.pair.image)};
@@ -191,7 +207,7 @@ void join_as_others(std::vector<DrawnPair>& pairs, const CurveNet& net) {
     const auto distance = [](const std::array<NearestOnNet, 2>& ends) {
       return std::max(ends[0].distance, ends[1].distance);
     };
-    const auto one = ends_on(curve, most->first), other = ends_on(most->first, curve);
+    const auto one = ends_on(curve, image), other = ends_on(image, curve);
     const auto& best = distance(one) <= distance(other) ? one : other;
     if (distance(best) <= reach_of_ends(net)) drawn.ends = {best[0].place, best[1].place};
   }

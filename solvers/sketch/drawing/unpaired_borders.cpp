@@ -15,9 +15,8 @@ bool in_one_flat_panel(const SketchCurve& a, const SketchCurve& b) {
 
 }  // namespace
 
-std::vector<std::string> unpaired_borders(const CurveNet& net,
-                                          const std::vector<SymmetricPair>& pairs,
-                                          const std::vector<DenseMatch>& matches) {
+std::vector<std::string> unpaired_borders(const View& view, const CurveNet& net,
+                                          const std::vector<SymmetricPair>& pairs) {
   std::vector<bool> told(net.points.size(), false);  // nodes of borders whose depth is told
   std::vector<bool> paired(net.curves.size(), false);
   const auto tell = [&](int c) {
@@ -28,7 +27,6 @@ std::vector<std::string> unpaired_borders(const CurveNet& net,
     for (const auto* places : {&pair.point_at, &pair.image_at})
       for (const CurvePoint& place : *places) tell(place.curve);
   }
-  for (const DenseMatch& match : matches) tell(match.image.curve);
   const int count = static_cast<int>(net.curves.size());
   const auto follows = [&](int c) {
     const SketchCurve& curve = net.curves[c];
@@ -46,9 +44,15 @@ std::vector<std::string> unpaired_borders(const CurveNet& net,
     }
   }
   std::vector<std::string> ids;
-  for (int c = 0; c < count; ++c) {
-    const std::string& id = net.curves[c].id;
-    if (!paired[c] && std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  for (int s = 0; s < std::ssize(view.strokes); ++s) {
+    if (view.strokes[s].kind != StrokeKind::border) continue;
+    bool any = false, all_open = true;  // a stroke is several curves when it has corners
+    for (int c = 0; c < count; ++c) {
+      if (net.curves[c].stroke != s) continue;
+      any = true;
+      all_open = all_open && !paired[c];
+    }
+    if (any && all_open) ids.push_back(view.strokes[s].id);
   }
   return ids;
 }

@@ -15,6 +15,8 @@ namespace {
 
 /// Of a border's nodes, to either side of a ruling: by which its sense is told.
 constexpr int kSensePart = 8;
+/// Cosine of two directions that say clearly whether borders run alike.
+constexpr double kClearSense = 0.5;
 
 /// A drawn ruling as nodes of two borders.
 struct DrawnRuling {
@@ -142,13 +144,15 @@ bool PatchSweep::goes_on(const DrawnRuling& at, int way) const {
 }
 
 /// Whether the borders run alike (+1) or against each other: by their directions over a part that
-/// noise at an end does not turn, unless only one of the two leaves a patch.
+/// noise at an end does not turn; where these are no answer, so that there is a patch.
 int PatchSweep::same_sense(const DrawnRuling& at) const {
   const auto direction = [&](const SketchCurve& curve, int i) {
-    return evaluate(net_, tangent_form(curve, i, std::max(half_width_, curve.size() / kSensePart)));
+    const int half_width = std::max(half_width_, curve.size() / kSensePart);
+    return evaluate(net_, tangent_form(curve, i, half_width)).normalized();
   };
-  const int way = direction(first(), at.i).dot(direction(second(), at.j)) >= 0 ? 1 : -1;
-  return goes_on(at, way) || !goes_on(at, -way) ? way : -way;
+  const double cosine = direction(first(), at.i).dot(direction(second(), at.j));
+  const int way = cosine >= 0 ? 1 : -1;
+  return goes_on(at, way) || std::abs(cosine) > kClearSense ? way : -way;
 }
 
 NodeRun PatchSweep::run_to_end(const SketchCurve& curve, int from, int way) const {

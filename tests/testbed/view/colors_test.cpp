@@ -38,7 +38,7 @@ TEST(ColorScale, SignedValuesAreSymmetricAboutZeroAndRatiosAboutOne) {
   EXPECT_DOUBLE_EQ(about_one.high, 1.5);
 }
 
-// A pattern without stretch is pale, not red by its roundings; lengths may be as small as they like.
+// A pattern without stretch is pale, not red by its roundings; lengths may be as small as they are.
 TEST(ColorScale, RoundingsOfNumbersWithoutAUnitHaveNoColours) {
   Part part = with_values("stretch", Eigen::VectorXd::LinSpaced(8, -3e-9, 5e-9));
   EXPECT_DOUBLE_EQ(make_color_scale({&part}, "stretch").high, 5e-9);
