@@ -19,7 +19,6 @@
 namespace geoprior::sketch {
 namespace {
 
-
 /// Circular cone about y of slant 1, its apex at the top; `sine` of the angle between axis and
 /// side.
 TriMesh cone(double sine, int segments, int rows) {
