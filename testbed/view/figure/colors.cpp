@@ -36,7 +36,7 @@ constexpr std::array<Color, 9> kDiverging{{{0.230, 0.299, 0.754},
                                            {0.869, 0.378, 0.301},
                                            {0.706, 0.016, 0.150}}};
 
-/// Range of a number without a unit, a stretch or a share, below which colours would tell roundings.
+/// Range of a number without a unit, as a stretch, below which colours would tell roundings.
 constexpr double kLeastShare = 1e-4;
 
 /// Of lines of the first class, which would not be seen on the page in the tone of the material.

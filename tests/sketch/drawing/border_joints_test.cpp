@@ -111,11 +111,11 @@ TEST(DenseMatches, LeaveOutWhatRunsAlongTheNormal) {
   for (Eigen::Vector2d& p : arch.points) p.y() = 1 - p.x() * p.x();
   Stroke sill = line("sill", StrokeKind::border, "door", {-1, 0}, {1, 0});
   for (std::size_t k = 1; k + 1 < sill.points.size(); ++k)
-    sill.points[k].y() = (k / 2) % 2 == 0 ? 0.03 : -0.03;
+    sill.points[k].y() = (k / 2) % 2 == 0 ? 0.022 : -0.022;
   const View view = view_of({arch, sill, pair("feet", "door", {-1, 0}, {1, 0}),
                              pair("top", "door", {-0.001, 1}, {0.001, 1})});
   const CurveNet net = build_curve_net(view, {});
-  const auto matches = dense_matches(net, read_symmetric_pairs(view, net, plane, 0.3), plane, 4);
+  const auto matches = dense_matches(net, read_symmetric_pairs(view, net, plane, 0.3), plane, 1);
   EXPECT_GT(matches.size(), 10u);
   for (const DenseMatch& match : matches) EXPECT_EQ(match.image.curve, 0);
 }
