@@ -11,7 +11,7 @@
 #include "solvers/sketch/drawing/curve_net.h"
 #include "solvers/sketch/drawing/depth_system.h"
 #include "solvers/sketch/drawing/drawn_panels.h"
-#include "solvers/sketch/drawing/hidden_borders.h"
+#include "solvers/sketch/hidden/hidden_borders.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
 #include "solvers/sketch/drawing/mirror_surface.h"
 #include "solvers/sketch/surface/refine_depth.h"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "solvers/sketch/drawing/curve_net.h"
 #include "solvers/sketch/drawing/dense_matches.h"
-#include "solvers/sketch/drawing/ruling_ends.h"
 #include "solvers/sketch/drawing/symmetric_pairs.h"
 #include "solvers/sketch/surface/ruled_patches.h"
 

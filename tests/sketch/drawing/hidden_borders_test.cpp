@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/hidden_borders.h"
+#include "solvers/sketch/hidden/hidden_borders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "experiments/sketch/truth/known_drawing.h"
 #include "experiments/sketch/truth/known_view.h"
 #include "experiments/sketch/truth/synthetic_views.h"
-#include "solvers/sketch/drawing/border_models.h"
+#include "solvers/sketch/hidden/border_models.h"
 #include "solvers/sketch/drawing/faired_borders.h"
 #include "solvers/sketch/one_view.h"
 

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <array>
-#include <string>
-#include <vector>
-
 #include "models/sketch/drawing/drawing.h"
-#include "solvers/sketch/drawing/border_stretches.h"
 #include "solvers/sketch/drawing/mirror_plane.h"
+#include "solvers/sketch/hidden/completed_view.h"
 
 namespace geoprior::sketch {
 
@@ -16,28 +12,6 @@ enum class Completion {
   mirror,    ///< mirror images and smooth continuation
   parallel,  ///< parallel copies, ellipses and smooth continuation
   none,      ///< nothing is guessed: flat and fair panels with an open border are left out
-};
-
-/// A stretch of a border that nothing of the drawing shows.
-struct GuessedStretch {
-  std::string border;  ///< stroke that it continues; of a closing line its panel
-  std::string from;    ///< "the parallel border 'top'", "an ellipse", …
-  double length = 0;   ///< in the view (m)
-};
-
-/// A view whose borders are whole.
-struct CompletedView {
-  View view;
-  std::vector<std::vector<DrawnPlace>> places;  ///< of each point of each stroke
-  std::vector<GuessedStretch> guesses;
-  /// Strokes of borders that a ruling joins and of which one is the parallel copy of the other.
-  std::vector<std::array<int, 2>> copies;
-  std::vector<std::string> open_ends;  ///< strokes that end where something covers them, as drawn
-  double drawn_length = 0;             ///< of all borders in the view (m)
-  double guessed_length = 0;
-
-  /// Of a place on one of its strokes.
-  [[nodiscard]] DrawnPlace place(int stroke, double at) const;
 };
 
 /// Completes the borders of a drawing that shows only what can be seen (thesis 2.1.3).
@@ -72,8 +46,5 @@ struct CompletedView {
 ///               and borders are copies to two of it
 CompletedView complete_borders(const View& view, const MirrorPlane& plane, double snap,
                                Completion completion, double noise = 0);
-
-/// One sentence on what was guessed; empty when nothing was.
-std::string completion_note(const CompletedView& completed);
 
 }  // namespace geoprior::sketch

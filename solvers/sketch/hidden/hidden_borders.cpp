@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/hidden_borders.h"
+#include "solvers/sketch/hidden/hidden_borders.h"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include "core/error.h"
 #include "core/geometry/planar.h"
 #include "models/sketch/drawing/ellipse_fit.h"
-#include "solvers/sketch/drawing/border_models.h"
-#include "solvers/sketch/drawing/completed_view.h"
-#include "solvers/sketch/drawing/seen_borders.h"
+#include "solvers/sketch/hidden/border_models.h"
+#include "solvers/sketch/hidden/completed_view.h"
+#include "solvers/sketch/hidden/seen_borders.h"
 
 namespace geoprior::sketch {
 namespace {

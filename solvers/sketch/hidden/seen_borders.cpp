@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/seen_borders.h"
+#include "solvers/sketch/hidden/seen_borders.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include "core/angles.h"
 #include "core/geometry/planar.h"
 #include "solvers/sketch/drawing/curve_net.h"
-#include "solvers/sketch/drawing/ruling_ends.h"
 
 namespace geoprior::sketch {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/sketch/drawing/border_models.h"
+#include "solvers/sketch/hidden/border_models.h"
 
 namespace geoprior::sketch {
 

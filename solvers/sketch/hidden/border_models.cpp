@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/border_models.h"
+#include "solvers/sketch/hidden/border_models.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

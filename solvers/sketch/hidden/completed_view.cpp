@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/completed_view.h"
+#include "solvers/sketch/hidden/completed_view.h"
 
 #include <algorithm>
 #include <array>

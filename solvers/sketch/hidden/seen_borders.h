@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/sketch/drawing/drawing.h"
-#include "solvers/sketch/drawing/border_stretches.h"
+#include "solvers/sketch/hidden/border_stretches.h"
 
 namespace geoprior::sketch {
 

@@ -1,4 +1,4 @@
-#include "solvers/sketch/drawing/border_stretches.h"
+#include "solvers/sketch/hidden/border_stretches.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
