@@ -16,8 +16,8 @@
 #include "experiments/sketch/truth/known_drawing.h"
 #include "experiments/sketch/truth/known_view.h"
 #include "experiments/sketch/truth/synthetic_views.h"
-#include "solvers/sketch/hidden/border_models.h"
 #include "solvers/sketch/drawing/faired_borders.h"
+#include "solvers/sketch/hidden/border_models.h"
 #include "solvers/sketch/one_view.h"
 
 namespace geoprior::sketch {
