@@ -35,8 +35,6 @@ constexpr double kHeldRatio = 1;
 constexpr double kClearGain = 3;
 /// Deviations of the ratio's logarithm above which noise does not explain it.
 constexpr double kClearRatio = 3;
-/// Deviations of the noise within which ends meet.
-constexpr double kSnapNoise = 3;
 /// Deviations of the noise below which a panel is too narrow to be sure of.
 constexpr double kNarrowPanel = 30;
 /// Noise over the diagonal at which a drawn point is held half as much as in an exact drawing; and

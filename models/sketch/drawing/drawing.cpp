@@ -84,6 +84,16 @@ bool may_meet(const std::vector<std::string>& panels, const std::vector<std::str
              panels.end();
 }
 
+bool bounds(const std::vector<std::string>& panels, const std::string& name) {
+  return std::find(panels.begin(), panels.end(), name) != panels.end();
+}
+
+bool is_named_flat(const std::string& panel) { return panel.starts_with("flat"); }
+
+bool is_ruling(const Stroke& stroke) {
+  return stroke.kind == StrokeKind::ruling || stroke.kind == StrokeKind::silhouette;
+}
+
 std::vector<std::string> panels_of(const View& view) {
   std::vector<std::string> names;
   for (const Stroke* border : strokes_of(view, StrokeKind::border)) {

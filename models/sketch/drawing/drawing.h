@@ -63,6 +63,12 @@ std::vector<std::string> panels_in(const std::string& text);
 /// Whether borders of these panels can meet on the object: they bound one in common, or one of them
 /// names none.
 bool may_meet(const std::vector<std::string>& panels, const std::vector<std::string>& others);
+/// Whether a border of these panels bounds the named one.
+bool bounds(const std::vector<std::string>& panels, const std::string& name);
+/// A panel whose name begins with "flat" is plane.
+bool is_named_flat(const std::string& panel);
+/// Whether a stroke of one view is a ruling of a panel: drawn as one, or as a silhouette.
+bool is_ruling(const Stroke& stroke);
 /// Those of all borders, in the order in which they are first named.
 std::vector<std::string> panels_of(const View& view);
 

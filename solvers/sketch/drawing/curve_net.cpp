@@ -27,7 +27,6 @@ constexpr double kLongChord = 3;
 constexpr double kRulingReach = 2;
 /// And by this share of the diagonal, however finely ends are snapped.
 constexpr double kRulingHand = 0.03;
-
 /// Nodes of a small closed border, so that tangents are not fitted to half of it.
 constexpr int kLeastAround = 32;
 
@@ -279,8 +278,7 @@ std::vector<int> borders_for_ruling(const CurveNet& net, const Stroke& stroke) {
   std::vector<int> all, named;
   for (int c = 0; c < std::ssize(net.curves); ++c) {
     all.push_back(c);
-    const std::vector<std::string>& panels = net.curves[c].panels;
-    if (std::find(panels.begin(), panels.end(), stroke.name) != panels.end()) named.push_back(c);
+    if (bounds(net.curves[c].panels, stroke.name)) named.push_back(c);
   }
   return named.size() < 2 ? all : named;
 }
@@ -297,8 +295,7 @@ bool is_marked_hidden(const View& view, const Eigen::Vector2d& p, double reach) 
 std::set<std::pair<int, int>> opposite_borders(const View& view, const CurveNet& net) {
   std::set<std::pair<int, int>> opposite;
   for (const Stroke& stroke : view.strokes) {
-    const bool ruling = stroke.kind == StrokeKind::silhouette || stroke.kind == StrokeKind::ruling;
-    if (!ruling || stroke.points.size() < 2) continue;
+    if (!is_ruling(stroke) || stroke.points.size() < 2) continue;
     const auto [a, b] = ruling_ends(net, stroke);
     if (a.curve < 0 || b.curve < 0 || a.curve == b.curve) continue;
     opposite.insert(std::minmax(net.curves[a.curve].stroke, net.curves[b.curve].stroke));
@@ -353,6 +350,7 @@ void drop_unused_nodes(CurveNet& net) {
   net.points = std::move(kept);
 }
 
+/// Nodes along an occlusion.
 void mark_hidden(const View& view, CurveNet& net) {
   for (const Eigen::Vector2d& p : net.points)
     net.hidden.push_back(is_marked_hidden(view, p, net.snap / 2));

@@ -42,6 +42,8 @@ struct CurvePoint {
 /// Of the snapping distance: nearer, even opposite sides of a panel touch, as at the tips of a
 /// visor.
 inline constexpr double kTouches = 0.1;
+/// Deviations of the noise within which ends meet, however finely they are snapped.
+inline constexpr double kSnapNoise = 3;
 
 /// All borders of a view.
 struct CurveNet {

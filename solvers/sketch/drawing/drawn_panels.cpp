@@ -8,10 +8,6 @@
 namespace geoprior::sketch {
 namespace {
 
-bool names_panel(const SketchCurve& curve, const std::string& name) {
-  return std::find(curve.panels.begin(), curve.panels.end(), name) != curve.panels.end();
-}
-
 /// Names in the order in which the borders give them.
 std::vector<std::string> names_of_panels(const CurveNet& net) {
   std::vector<std::string> names;
@@ -25,8 +21,8 @@ std::vector<std::string> names_of_panels(const CurveNet& net) {
 
 bool is_ruled(const CurveNet& net, const std::vector<RuledPatch>& ruled, const std::string& name) {
   return std::any_of(ruled.begin(), ruled.end(), [&](const RuledPatch& patch) {
-    return names_panel(net.curves[patch.first], name) &&
-           names_panel(net.curves[patch.second], name);
+    return bounds(net.curves[patch.first].panels, name) &&
+           bounds(net.curves[patch.second].panels, name);
   });
 }
 
@@ -88,11 +84,11 @@ std::vector<DrawnPanel> find_drawn_panels(const CurveNet& net, const std::vector
     std::vector<int> curves;
     bool straight = true;
     for (int c = 0; c < std::ssize(net.curves); ++c) {
-      if (!names_panel(net.curves[c], name)) continue;
+      if (!bounds(net.curves[c].panels, name)) continue;
       curves.push_back(c);
       straight = straight && is_straight(net, net.curves[c]);
     }
-    const bool flat = straight || name.rfind("flat", 0) == 0;
+    const bool flat = straight || is_named_flat(name);
     ChainedLoop chain = chained_loop(net, curves);
     if (chain.open >= 0 && skip_open) continue;
     if (chain.open >= 0) {

@@ -52,9 +52,8 @@ std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
   std::vector<int> borders;
   for (int c = 0; c < std::ssize(net.curves); ++c) {
     const std::vector<std::string>& own = net.curves[c].panels;
-    const bool belongs = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
-      return std::find(own.begin(), own.end(), name) != own.end();
-    });
+    const bool belongs = std::all_of(panels.begin(), panels.end(),
+                                     [&](const std::string& name) { return bounds(own, name); });
     if (belongs) borders.push_back(c);
   }
   if (borders.empty()) {

@@ -5,11 +5,9 @@
 namespace geoprior::sketch {
 namespace {
 
-bool is_flat(const std::string& panel) { return panel.rfind("flat", 0) == 0; }
-
 bool in_one_flat_panel(const SketchCurve& a, const SketchCurve& b) {
   return std::any_of(a.panels.begin(), a.panels.end(), [&](const std::string& name) {
-    return is_flat(name) && std::find(b.panels.begin(), b.panels.end(), name) != b.panels.end();
+    return is_named_flat(name) && bounds(b.panels, name);
   });
 }
 

@@ -79,7 +79,7 @@ void close_panels(const std::vector<PartialBorder>& borders, double snap, Comple
   for (const PartialBorder& border : borders)
     for (const std::string& name : border.panels) members[name].push_back(&border);
   for (const auto& [name, around] : members) {
-    if (name.rfind("flat", 0) != 0) continue;
+    if (!is_named_flat(name)) continue;
     std::vector<Eigen::Vector2d> ends;
     bool closed = false;
     for (const PartialBorder* border : around) {

@@ -190,7 +190,7 @@ bool BorderCompletion::end_lies_on(const PartialBorder& border, const Stroke& pa
                                    const Eigen::Vector2d& end) const {
   const std::vector<std::string> panels = panels_in(pair.panels);
   const bool named = std::all_of(panels.begin(), panels.end(), [&](const std::string& name) {
-    return std::find(border.panels.begin(), border.panels.end(), name) != border.panels.end();
+    return bounds(border.panels, name);
   });
   const double own = distance_to(border, end);
   if (!named || own > mark_reach_) return false;

@@ -20,8 +20,7 @@ constexpr double kMarkReach = 4;
 constexpr double kMarkHand = 0.03;
 /// Turning at either end of a join of two stretches.
 constexpr double kSmoothJoin = 50 * kDegree;
-/// In deviations of the noise: within which ends meet and marks lie on borders.
-constexpr double kSnapNoise = 3;
+/// In deviations of the noise: within which marks lie on borders.
 constexpr double kMarkNoise = 5;
 /// Between whose ends lies less is noise, where more is seen of the border.
 constexpr double kCrumbNoise = 4;
@@ -182,15 +181,11 @@ void BorderReader::drop_crumbs() {
 void BorderReader::find_rulings() {
   seen_.rulings.clear();
   for (const Stroke& stroke : view_.strokes) {
-    const bool ruling = stroke.kind == StrokeKind::silhouette || stroke.kind == StrokeKind::ruling;
-    if (!ruling || stroke.points.size() < 2) continue;
+    if (!is_ruling(stroke) || stroke.points.size() < 2) continue;
     std::vector<int> named;
     std::array<std::vector<double>, 2> distances;
     for (int b = 0; b < std::ssize(seen_.borders); ++b) {
-      const std::vector<std::string>& panels = seen_.borders[b].panels;
-      if (!stroke.name.empty() &&
-          std::find(panels.begin(), panels.end(), stroke.name) == panels.end())
-        continue;
+      if (!stroke.name.empty() && !bounds(seen_.borders[b].panels, stroke.name)) continue;
       named.push_back(b);
       distances[0].push_back(distance_to(seen_.borders[b], stroke.points.front()));
       distances[1].push_back(distance_to(seen_.borders[b], stroke.points.back()));

@@ -79,7 +79,7 @@ using RulingsOfBorders = std::map<std::pair<int, int>, std::vector<DrawnRuling>>
 RulingsOfBorders read_rulings(const View& view, const CurveNet& net) {
   RulingsOfBorders rulings;
   for (const Stroke& stroke : view.strokes) {
-    if (stroke.kind != StrokeKind::ruling && stroke.kind != StrokeKind::silhouette) continue;
+    if (!is_ruling(stroke)) continue;
     require_straight(stroke, net.snap);
     auto [a, b] = borders_of_ruling(net, stroke);
     if (a.curve > b.curve) std::swap(a, b);
