@@ -103,8 +103,8 @@ void add_readings(DiagnosticTable& table) {
       {{"texture_seen", "1", "share of the pattern that the photograph shows"},
        {"texture_mirrored", "1", "share that has the colour of its visible mirror image"},
        {"texture_flat", "1", "share that nothing shows: the mean colour of its panel"},
-       {"texture_inside", "1",
-        "share of what is shown that lies beside a silhouette and has the colour farther inside"}});
+       {"texture_continued", "1",
+        "share that is shown beside a silhouette only: colours go on from around"}});
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ MetricGroup surface_group() {
            [](M m) { return m.crease.saw_share; })
       .row("crease_rest_p95", "deg",
            "angle beyond edge length over local radius that 95 % of the length of all edges stay "
-           "under, off clean creases and what was drawn as one",
+           "under, off what was drawn as a crease",
            kLow, {0.05, 0.03}, [](M m) { return m.crease.rest_p95 / kDegree; })
       .row("crease_drawn", "m",
            "length of the edges along seams, folds and drawn corners, which may be creases", kNone,

@@ -231,7 +231,7 @@ CreaseMeasures crease_measures(const TriMesh& mesh, double crease,
     if (!of.counts(e)) continue;
     const auto [a, b] = edges.edge(e);
     const double length = (mesh.V.row(a) - mesh.V.row(b)).norm(), excess = turns[e].excess;
-    if (!clean[e]) rest.emplace_back(excess, length);
+    rest.emplace_back(excess, length);
     if (excess <= crease) continue;
     m.turning += length * excess;
     m.length += length;

@@ -17,8 +17,8 @@ struct CreaseMeasures {
   double length = 0;        ///< of all edges of creases (m)
   double clean_length = 0;  ///< of those that run on smoothly in lines (m)
   double saw_share = 0;     ///< share of `turning` in the others: teeth; 0 without creases
-  double rest_p95 = 0;  ///< what 95 % of the length of all edges off clean creases stay under, of
-                        ///< the excess angle (rad)
+  double rest_p95 = 0;      ///< what 95 % of the length of all edges that count stay under, of the
+                            ///< excess angle (rad)
 };
 
 /// Turning of edges beyond that of the surface around them.

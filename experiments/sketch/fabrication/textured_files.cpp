@@ -142,7 +142,7 @@ TexturedFiles textured_files(const View& view, const PixelImage& photo, const On
   made.diagnostics = {{"texture_seen", baked.seen},
                       {"texture_mirrored", baked.mirrored},
                       {"texture_flat", baked.flat},
-                      {"texture_inside", baked.inside}};
+                      {"texture_continued", baked.continued}};
   return made;
 }
 

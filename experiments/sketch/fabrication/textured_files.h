@@ -22,7 +22,7 @@ void describe(OptionVisitor& v, TexturedFileOptions& options);
 
 struct TexturedFiles {
   std::vector<FabricationFile> files;
-  /// texture_seen, texture_mirrored, texture_flat, texture_inside
+  /// texture_seen, texture_mirrored, texture_flat, texture_continued
   std::map<std::string, double> diagnostics;
   Part texels;  ///< as `border_texels`, where the background's colour is known
 };

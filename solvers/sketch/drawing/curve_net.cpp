@@ -25,8 +25,6 @@ constexpr double kCornerTurn = 40 * kDegree;
 constexpr double kLongChord = 3;
 /// Ends of rulings may miss by this many snapping distances.
 constexpr double kRulingReach = 2;
-/// And by this share of the diagonal, however finely ends are snapped.
-constexpr double kRulingHand = 0.03;
 /// Nodes of a small closed border, so that tangents are not fitted to half of it.
 constexpr int kLeastAround = 32;
 
@@ -464,7 +462,7 @@ NearestOnNet nearest_on_curve(const CurveNet& net, int curve, const Eigen::Vecto
 }
 
 double reach_of_rulings(const CurveNet& net) {
-  return std::max(kRulingReach * net.snap, kRulingHand * net.diagonal);
+  return std::max(kRulingReach * net.snap, kMarkMiss * net.diagonal);
 }
 
 std::array<int, 2> two_borders(const std::vector<double>& from_first,

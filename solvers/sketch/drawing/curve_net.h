@@ -44,6 +44,9 @@ struct CurvePoint {
 inline constexpr double kTouches = 0.1;
 /// Deviations of the noise within which ends meet, however finely they are snapped.
 inline constexpr double kSnapNoise = 3;
+/// Of the diagonal of the drawing: by so much a hand misses a border with the end of a ruling or of
+/// a pair, however finely ends are snapped.
+inline constexpr double kMarkMiss = 0.03;
 
 /// All borders of a view.
 struct CurveNet {

@@ -14,8 +14,6 @@ namespace {
 
 /// Ends of pairs are drawn onto borders by hand: they may miss by this many snapping distances.
 constexpr double kPairReach = 2;
-/// And by this share of the diagonal, however finely ends are snapped.
-constexpr double kPairHand = 0.03;
 /// Variance of a faired border over that of a drawn point.
 constexpr double kBorderVariance = 0.1;
 /// Deviations by which an end slides at most.
@@ -64,7 +62,7 @@ std::vector<int> borders_for_pair(const CurveNet& net, const Stroke& stroke) {
 }
 
 double reach_of_ends(const CurveNet& net) {
-  return std::max(kPairReach * net.snap, kPairHand * net.diagonal);
+  return std::max(kPairReach * net.snap, kMarkMiss * net.diagonal);
 }
 
 NearestOnNet border_of_end(const CurveNet& net, const std::vector<int>& borders,

@@ -16,8 +16,6 @@ namespace {
 constexpr double kCoverReach = 2;
 /// The same of the ends of rulings and pairs, which a hand puts onto borders.
 constexpr double kMarkReach = 4;
-/// And at least this share of the diagonal.
-constexpr double kMarkHand = 0.03;
 /// Turning at either end of a join of two stretches.
 constexpr double kSmoothJoin = 50 * kDegree;
 /// In deviations of the noise: within which marks lie on borders.
@@ -45,6 +43,7 @@ class BorderReader {
   void drop_crumbs();
 
  private:
+  [[nodiscard]] std::vector<int> borders_for_ruling(const Stroke& stroke) const;
   bool join_one();
   [[nodiscard]] bool are_opposite(const PartialBorder& a, const PartialBorder& b) const;
   [[nodiscard]] bool is_covered(const PartialBorder& own, const Eigen::Vector2d& end,
@@ -177,23 +176,31 @@ void BorderReader::drop_crumbs() {
   }
 }
 
+/// Those of the panel that it names; all where fewer than two are.
+std::vector<int> BorderReader::borders_for_ruling(const Stroke& stroke) const {
+  std::vector<int> all, named;
+  for (int b = 0; b < std::ssize(seen_.borders); ++b) {
+    all.push_back(b);
+    if (bounds(seen_.borders[b].panels, stroke.name)) named.push_back(b);
+  }
+  return named.size() < 2 ? all : named;
+}
+
 /// The rulings whose ends lie on two borders of the panel that they name, if they name one.
 void BorderReader::find_rulings() {
   seen_.rulings.clear();
   for (const Stroke& stroke : view_.strokes) {
     if (!is_ruling(stroke) || stroke.points.size() < 2) continue;
-    std::vector<int> named;
+    const std::vector<int> asked = borders_for_ruling(stroke);
     std::array<std::vector<double>, 2> distances;
-    for (int b = 0; b < std::ssize(seen_.borders); ++b) {
-      if (!stroke.name.empty() && !bounds(seen_.borders[b].panels, stroke.name)) continue;
-      named.push_back(b);
+    for (const int b : asked) {
       distances[0].push_back(distance_to(seen_.borders[b], stroke.points.front()));
       distances[1].push_back(distance_to(seen_.borders[b], stroke.points.back()));
     }
     const auto [first, second] = two_borders(distances[0], distances[1], seen_.mark_reach);
     if (first < 0 || second < 0 || first == second) continue;
     seen_.rulings.push_back(
-        {{named[first], named[second]}, {stroke.points.front(), stroke.points.back()}});
+        {{asked[first], asked[second]}, {stroke.points.front(), stroke.points.back()}});
   }
 }
 
@@ -223,7 +230,7 @@ SeenBorders borders_as_drawn(const View& view, double snap, double noise) {
   seen.diagonal = diagonal;
   seen.snap = std::max(snap * diagonal, kSnapNoise * noise);
   seen.mark_reach =
-      std::max({kMarkReach * snap * diagonal, kMarkHand * diagonal, kMarkNoise * noise});
+      std::max({kMarkReach * snap * diagonal, kMarkMiss * diagonal, kMarkNoise * noise});
   BorderReader(view, noise, seen).find_rulings();
   return seen;
 }

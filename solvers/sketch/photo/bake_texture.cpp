@@ -9,6 +9,7 @@
 #include "core/connectivity.h"
 #include "core/disjoint_sets.h"
 #include "core/error.h"
+#include "solvers/sketch/photo/continued_colours.h"
 
 namespace geoprior::sketch {
 namespace {
@@ -40,10 +41,9 @@ PixelColour rounded_colour(const Eigen::Vector3d& c) {
 }
 
 /// What the photograph shows of a point.
-struct SeenColour {
-  Eigen::Vector3d colour;
-  bool inside =
-      false;  ///< taken from farther inside, as the point's own image is too near a border
+struct SeenPoint {
+  bool seen = false;
+  std::optional<Eigen::Vector3d> colour;  ///< of a seen one that is safe from silhouettes
 };
 
 /// What the photograph shows of the surface.
@@ -52,12 +52,10 @@ class SeenSurface {
   SeenSurface(const View& view, const PixelImage& photo, const OneViewResult& result,
               const BakeOptions& options);
 
-  /// Colour of a point that is seen, at its place in the picture; nothing when it is not.
-  /// @param normal  of the surface there, to the outside
-  /// @param patch   that it belongs to
-  [[nodiscard]] std::optional<SeenColour> colour(const Eigen::Vector3d& point,
-                                                 const Eigen::Vector3d& normal,
-                                                 const Eigen::Vector2d& texture, int patch) const;
+  /// @param normal   of the surface there, to the outside
+  /// @param texture  its place in the picture
+  [[nodiscard]] SeenPoint look_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                  const Eigen::Vector2d& texture) const;
   /// Texture coordinates of a point's own image.
   [[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& point) const {
     return (point.head<2>() - origin_).cwiseQuotient(size_);
@@ -68,9 +66,11 @@ class SeenSurface {
   void decide_outsides(const OneViewResult& result);
   void mark_silhouettes();
   [[nodiscard]] bool at_silhouette(int x, int y) const;
-  [[nodiscard]] bool inner(int x, int y, int patch) const;
-  [[nodiscard]] std::optional<Eigen::Vector2d> nearest_inner(const Eigen::Vector2d& at,
-                                                             int patch) const;
+  /// Colour of the photograph at texture coordinates.
+  [[nodiscard]] Eigen::Vector3d photo_of(const Eigen::Vector2d& texture) const {
+    return photo_colour(
+        photo_, {texture.x() * photo_.width - 0.5, (1 - texture.y()) * photo_.height - 0.5});
+  }
   [[nodiscard]] std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(y) * grid_.width + x;
   }
@@ -143,30 +143,6 @@ void SeenSurface::mark_silhouettes() {
   }
 }
 
-/// Whether a pixel shows a patch, away from silhouettes.
-bool SeenSurface::inner(int x, int y, int patch) const {
-  if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return false;
-  const std::size_t i = pixel(x, y);
-  return nearest_.covered(i) && outer_[i] == 0 && patch_[nearest_.triangle[i]] == patch;
-}
-
-/// The nearest such pixel, a few times farther in than photograph and drawing may disagree at most.
-std::optional<Eigen::Vector2d> SeenSurface::nearest_inner(const Eigen::Vector2d& at,
-                                                          int patch) const {
-  constexpr double kReach = 4;
-  const int reach = static_cast<int>(std::ceil(kReach * (disagreement_ + 1)));
-  const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
-  std::optional<Eigen::Vector2d> best;
-  for (int j = y - reach; j <= y + reach; ++j) {
-    for (int i = x - reach; i <= x + reach; ++i) {
-      const Eigen::Vector2d there(i, j);
-      if (best && (there - at).squaredNorm() >= (*best - at).squaredNorm()) continue;
-      if (inner(i, j, patch)) best = there;
-    }
-  }
-  return best;
-}
-
 /// A connected surface has one outside.
 void SeenSurface::decide_outsides(const OneViewResult& result) {
   const EdgeConnectivity edges(result.surface.mesh.F);
@@ -183,33 +159,22 @@ void SeenSurface::decide_outsides(const OneViewResult& result) {
   }
 }
 
-std::optional<SeenColour> SeenSurface::colour(const Eigen::Vector3d& point,
-                                              const Eigen::Vector3d& normal,
-                                              const Eigen::Vector2d& texture, int patch) const {
+SeenPoint SeenSurface::look_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                               const Eigen::Vector2d& texture) const {
   if (normal.z() < options_.least_facing) return {};
   const Eigen::Vector2d at = grid_.pixels_at(point.head<2>());
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
   if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return {};
   if (nearest_.depth[pixel(x, y)] > point.z() + behind_) return {};
-  const auto in_photo = [&](const Eigen::Vector2d& of) {
-    return photo_colour(photo_, {of.x() * photo_.width - 0.5, (1 - of.y()) * photo_.height - 0.5});
-  };
-  if (disagreement_ == 0) return SeenColour{in_photo(texture)};
-  // Four pixels are mixed.
-  const int left = static_cast<int>(std::floor(at.x())), top = static_cast<int>(std::floor(at.y()));
-  const auto unsafe = [&](int column, int row) {
-    const int c = std::clamp(column, 0, grid_.width - 1), r = std::clamp(row, 0, grid_.height - 1);
-    return !nearest_.covered(pixel(c, r)) || outer_[pixel(c, r)] != 0;
-  };
-  if (!unsafe(left, top) && !unsafe(left + 1, top) && !unsafe(left, top + 1) &&
-      !unsafe(left + 1, top + 1)) {
-    return SeenColour{in_photo(texture)};
+  // A place lies between four pixels.
+  for (const int j : {0, 1}) {
+    for (const int i : {0, 1}) {
+      const int column = std::clamp(static_cast<int>(std::floor(at.x())) + i, 0, grid_.width - 1);
+      const int row = std::clamp(static_cast<int>(std::floor(at.y())) + j, 0, grid_.height - 1);
+      if (outer_[pixel(column, row)] != 0) return {true, {}};
+    }
   }
-  const auto inside = nearest_inner(at, patch);
-  if (!inside) return {};
-  const Eigen::Vector2d place =
-      grid_.place(static_cast<int>(inside->x()), static_cast<int>(inside->y()));
-  return SeenColour{in_photo((place - origin_).cwiseQuotient(size_)), true};
+  return {true, photo_of(texture)};
 }
 
 /// The pieces of a pattern as one mesh in z = 0, with the places of its points in space.
@@ -263,8 +228,9 @@ PixelGrid pattern_grid(const TriMesh& flat, double photo_pixel, const BakeOption
   return grid;
 }
 
-/// Where a pixel's colour comes from.
-enum class TexelSource : std::uint8_t { none, seen, mirrored, flat };
+/// Where a pixel's colour comes from; `beside`: from what is around, as the photograph shows it too
+/// near a silhouette.
+enum class TexelSource : std::uint8_t { none, seen, mirrored, beside, flat };
 
 class PatternBaker {
  public:
@@ -278,7 +244,8 @@ class PatternBaker {
         colour_(covered_.triangle.size(), Eigen::Vector3d::Constant(255)),
         source_(covered_.triangle.size(), TexelSource::none) {}
 
-  BakedPattern bake(int bleed);
+  /// @param reach  of `continue_patches`; @param bleed beyond borders (pixels)
+  BakedPattern bake(double reach, int bleed);
 
  private:
   [[nodiscard]] int patch_at(std::size_t texel) const {
@@ -286,6 +253,7 @@ class PatternBaker {
     return result_.surface.patch[t];
   }
   void colour_texel(std::size_t texel);
+  void continue_patches(double reach);
   void fill_hidden();
   void bleed_once();
 
@@ -296,7 +264,6 @@ class PatternBaker {
   NearestTriangles covered_;
   std::vector<Eigen::Vector3d> colour_;
   std::vector<TexelSource> source_;
-  double moved_inside_ = 0;
 };
 
 void PatternBaker::colour_texel(std::size_t texel) {
@@ -319,20 +286,43 @@ void PatternBaker::colour_texel(std::size_t texel) {
     point = mirrored(plane, point);
     normal = reflected(normal);
   }
+  SeenPoint found = seen_.look_at(point, normal, texture);
   source_[texel] = TexelSource::seen;
-  const int patch = surface.patch[t];
-  std::optional<SeenColour> seen = seen_.colour(point, normal, texture, patch);
-  if (!seen) {
+  if (!found.seen) {
     const Eigen::Vector3d image = mirrored(plane, point);
-    source_[texel] = TexelSource::mirrored;
-    seen = seen_.colour(image, reflected(normal), seen_.projected(image), patch);
+    found = seen_.look_at(image, reflected(normal), seen_.projected(image));
+    source_[texel] = found.seen ? TexelSource::mirrored : TexelSource::flat;
   }
-  if (!seen) {
-    source_[texel] = TexelSource::flat;
-    return;
+  if (found.colour) {
+    colour_[texel] = *found.colour;
+  } else if (found.seen) {
+    source_[texel] = TexelSource::beside;
   }
-  if (seen->inside) ++moved_inside_;
-  colour_[texel] = seen->colour;
+}
+
+/// Colours beside silhouettes: those of the rest of their patch go on, on the cloth, where lines
+/// are as straight as they were woven. What is out of reach is hidden.
+/// @param reach  largest distance (pixels)
+void PatternBaker::continue_patches(double reach) {
+  const std::size_t count = result_.patches.size();
+  std::vector<std::vector<std::size_t>> region(count), fill(count);
+  PixelImage safe{grid_.width, grid_.height, {}};
+  for (const Eigen::Vector3d& c : colour_) safe.pixels.push_back(rounded_colour(c));
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] == TexelSource::none || source_[i] == TexelSource::flat) continue;
+    (source_[i] == TexelSource::beside ? fill : region)[patch_at(i)].push_back(i);
+  }
+  for (std::size_t patch = 0; patch < count; ++patch) {
+    const std::vector<Eigen::Vector3d> colours =
+        continued_colours(safe, region[patch], fill[patch], reach);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+      if (colours[i](0) >= 0) {
+        colour_[fill[patch][i]] = colours[i];
+      } else {
+        source_[fill[patch][i]] = TexelSource::flat;
+      }
+    }
+  }
 }
 
 /// Mean colours where nothing is seen.
@@ -342,7 +332,7 @@ void PatternBaker::fill_hidden() {
   Eigen::Vector3d all(0, 0, 0);
   double number = 0;
   for (std::size_t i = 0; i < source_.size(); ++i) {
-    if (source_[i] != TexelSource::seen && source_[i] != TexelSource::mirrored) continue;
+    if (source_[i] == TexelSource::none || source_[i] == TexelSource::flat) continue;
     const std::size_t p = patch_at(i);
     sum[p] += colour_[i];
     all += colour_[i];
@@ -384,9 +374,10 @@ void PatternBaker::bleed_once() {
   source_ = std::move(grown);
 }
 
-BakedPattern PatternBaker::bake(int bleed) {
+BakedPattern PatternBaker::bake(double reach, int bleed) {
   for (std::size_t i = 0; i < source_.size(); ++i)
     if (covered_.covered(i)) colour_texel(i);
+  continue_patches(reach);
   BakedPattern baked;
   baked.grid = grid_;
   double all = 0;
@@ -394,10 +385,11 @@ BakedPattern PatternBaker::bake(int bleed) {
     all += source != TexelSource::none ? 1 : 0;
     baked.seen += source == TexelSource::seen ? 1 : 0;
     baked.mirrored += source == TexelSource::mirrored ? 1 : 0;
+    baked.continued += source == TexelSource::beside ? 1 : 0;
     baked.flat += source == TexelSource::flat ? 1 : 0;
   }
-  baked.inside = moved_inside_ / std::max(baked.seen + baked.mirrored, 1.0);
-  for (double* share : {&baked.seen, &baked.mirrored, &baked.flat}) *share /= std::max(all, 1.0);
+  for (double* share : {&baked.seen, &baked.mirrored, &baked.continued, &baked.flat})
+    *share /= std::max(all, 1.0);
   fill_hidden();
   for (int k = 0; k < bleed; ++k) bleed_once();
   baked.image = {grid_.width, grid_.height, {}};
@@ -429,8 +421,13 @@ BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneVi
                           const Pattern& pattern, const BakeOptions& options) {
   const SeenSurface seen(view, photo, result, options);
   const PatternInSpace pieces = merged_pieces(pattern);
-  const PixelGrid grid = pattern_grid(pieces.flat, view.picture.size.x() / photo.width, options);
-  return PatternBaker(seen, result, pieces, grid).bake(options.bleed);
+  const double photo_pixel = view.picture.size.x() / photo.width;
+  const PixelGrid grid = pattern_grid(pieces.flat, photo_pixel, options);
+  // Four times what the picture may be off by, of what is turned away from the eye.
+  constexpr double kReach = 4, kLeastFacing = 0.05;
+  const double reach = kReach * (result.disagreement + 1) /
+                       std::max(options.least_facing, kLeastFacing) * photo_pixel / grid.pixel;
+  return PatternBaker(seen, result, pieces, grid).bake(reach, options.bleed);
 }
 
 }  // namespace geoprior::sketch

@@ -26,9 +26,9 @@ struct BakedPattern {
   PixelGrid grid;       ///< places of its pixels in the pattern (m)
   double seen = 0;      ///< share of the pieces' area that the photograph shows
   double mirrored = 0;  ///< … that is hidden, but whose mirror image is seen
-  double flat = 0;      ///< … that nothing shows
-  /// Share of what is seen that lies so near to a silhouette that it has the colour beside it.
-  double inside = 0;
+  double continued =
+      0;            ///< … that is seen so near to a silhouette that it is continued from around
+  double flat = 0;  ///< … that nothing shows
 };
 
 /// Colours of the flat pieces from the photograph (thesis 2.1.3: the hidden half has the texture of
@@ -42,11 +42,11 @@ struct BakedPattern {
 /// The result is symmetric: a sign on one half is on both, mirrored.
 ///
 /// What lies nearer to a silhouette in the picture than photograph and drawing may disagree
-/// (`OneViewResult::disagreement`), one
-/// pixel more for the mixed pixels along an edge, has the colour of the nearest pixel of its patch
-/// that lies farther in: else a traced line that is two pixels off paints the background, or what
-/// lies behind or beside, along the borders of panels. Silhouettes here are where the surface ends
-/// in the picture, its depth jumps, or another patch begins.
+/// (`OneViewResult::disagreement`), one pixel more for the mixed pixels along an edge, is not read:
+/// else a traced line that is two pixels off paints the background, or what lies behind or beside,
+/// along the borders of panels. On the pattern the colours of the rest of the patch go on there
+/// (`continued_colours`). Silhouettes here are where the surface ends in the picture, its depth
+/// jumps, or another patch begins.
 ///
 /// Colours are those of the photograph, with its light and shade in them.
 ///

@@ -140,8 +140,9 @@ TEST(BakePattern, CountsWhatIsSeenMirroredAndUnseen) {
   options.most_side = 400;
   const BakedPattern baked =
       bake_pattern(bag.view, uniform_image(90, 90, {1, 2, 3}), bag.result, bag.pattern, options);
-  EXPECT_NEAR(baked.seen + baked.mirrored + baked.flat, 1, 1e-12);
-  EXPECT_GT(baked.seen, 0.3);
+  EXPECT_NEAR(baked.seen + baked.mirrored + baked.continued + baked.flat, 1, 1e-12);
+  EXPECT_GT(baked.seen + baked.continued, 0.3);
+  EXPECT_GT(baked.continued, 0.03);
   EXPECT_GT(baked.flat, 0.3) << "the back alone is a quarter of the pattern";
 }
 
@@ -228,7 +229,7 @@ double green_share(const FlatObject& bag, const PixelImage& photo, double disagr
 }
 
 // Drawing and photograph differ by two pixels, whichever way: no background on the panels, where
-// colours read at the line itself have it; with three the allowance is used up.
+// colours read at the line itself have it; seven use the allowance up.
 TEST(BakePattern, BackgroundDoesNotBleedOverPanelsOfADrawingThatIsTwoPixelsOff) {
   const FlatObject bag = flat_bag();
   for (const Eigen::Vector2i& shift :
@@ -237,7 +238,7 @@ TEST(BakePattern, BackgroundDoesNotBleedOverPanelsOfADrawingThatIsTwoPixelsOff) 
     EXPECT_EQ(green_share(bag, photo, 2), 0);
     EXPECT_GT(green_share(bag, photo, 0), 0.01);
   }
-  EXPECT_GT(green_share(bag, photo_of_bag(bag, 240, {5, 0}), 2), 0.001);
+  EXPECT_GT(green_share(bag, photo_of_bag(bag, 240, {7, 0}), 2), 0.02);
 }
 
 // Two pixels from the border of a rectangle of 40 x 20 pixels lies all but one of 36 x 16.
