@@ -226,19 +226,19 @@ CreaseMeasures crease_measures(const TriMesh& mesh, double crease,
   const std::vector<char> clean = CleanLines(mesh, edges, turns, crease).find();
   CreaseMeasures m;
   double saw = 0;
-  std::vector<std::pair<double, double>> rest;
+  std::vector<std::pair<double, double>> excesses;
   for (int e = 0; e < edges.edge_count(); ++e) {
     if (!of.counts(e)) continue;
     const auto [a, b] = edges.edge(e);
     const double length = (mesh.V.row(a) - mesh.V.row(b)).norm(), excess = turns[e].excess;
-    rest.emplace_back(excess, length);
+    excesses.emplace_back(excess, length);
     if (excess <= crease) continue;
     m.turning += length * excess;
     m.length += length;
     (clean[e] ? m.clean_length : saw) += clean[e] ? length : length * excess;
   }
   if (m.turning > 0) m.saw_share = saw / m.turning;
-  m.rest_p95 = length_quantile(rest, 0.95);
+  m.rest_p95 = length_quantile(excesses, 0.95);
   return m;
 }
 

@@ -385,7 +385,7 @@ void describe(OptionVisitor& v, OneViewOptions& o) {
   v.value("mirror", o.mirror, {.doc = "whether the more visible half is kept and mirrored"});
   v.value("disagreement", o.disagreement,
           {.doc = "pixels of the photograph by which it and the drawing may disagree: colours of a "
-                  "texture that lie so near to a panel's border are taken from farther inside",
+                  "texture that lie so near to a panel's border go on from farther inside",
            .min = 0,
            .max = 50});
   v.value("fair", o.fair, {.doc = "whether trembling borders are faired before all else"});

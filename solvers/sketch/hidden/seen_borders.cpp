@@ -176,7 +176,7 @@ void BorderReader::drop_crumbs() {
   }
 }
 
-/// Those of the panel that it names; all where fewer than two are.
+/// Borders that a ruling may join: those of the panel that it names, all where fewer than two are.
 std::vector<int> BorderReader::borders_for_ruling(const Stroke& stroke) const {
   std::vector<int> all, named;
   for (int b = 0; b < std::ssize(seen_.borders); ++b) {
@@ -186,7 +186,7 @@ std::vector<int> BorderReader::borders_for_ruling(const Stroke& stroke) const {
   return named.size() < 2 ? all : named;
 }
 
-/// The rulings whose ends lie on two borders of the panel that they name, if they name one.
+/// The rulings whose ends lie on two borders (`borders_for_ruling`).
 void BorderReader::find_rulings() {
   seen_.rulings.clear();
   for (const Stroke& stroke : view_.strokes) {

@@ -3,19 +3,21 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "core/connectivity.h"
 #include "core/disjoint_sets.h"
 #include "core/error.h"
-#include "solvers/sketch/photo/continued_colours.h"
+#include "solvers/sketch/photo/continued_patches.h"
 
 namespace geoprior::sketch {
 namespace {
 
 constexpr double kInch = 0.0254;
 constexpr int kMostSide = 30000;
+constexpr double kMixed = 1;  ///< width of the mixed pixels along an edge (pixels)
 
 /// Colour at pixel coordinates, bilinear; beyond the border that of the border.
 Eigen::Vector3d photo_colour(const PixelImage& photo, const Eigen::Vector2d& at) {
@@ -31,13 +33,6 @@ Eigen::Vector3d photo_colour(const PixelImage& photo, const Eigen::Vector2d& at)
   };
   return (1 - t) * ((1 - s) * at_pixel(left, top) + s * at_pixel(right, top)) +
          t * ((1 - s) * at_pixel(left, bottom) + s * at_pixel(right, bottom));
-}
-
-PixelColour rounded_colour(const Eigen::Vector3d& c) {
-  PixelColour colour{};
-  for (int k = 0; k < 3; ++k)
-    colour[k] = static_cast<std::uint8_t>(std::lround(std::clamp(c(k), 0.0, 255.0)));
-  return colour;
 }
 
 /// What the photograph shows of a point.
@@ -66,6 +61,11 @@ class SeenSurface {
   void decide_outsides(const OneViewResult& result);
   void mark_silhouettes();
   [[nodiscard]] bool at_silhouette(int x, int y) const;
+  /// Whether the photograph may show something else at a pixel: near a silhouette, or where the
+  /// surface is thinner than a pixel.
+  [[nodiscard]] bool is_unsafe(std::size_t pixel) const {
+    return disagreement_ > 0 && (outer_[pixel] != 0 || !nearest_.covered(pixel));
+  }
   /// Colour of the photograph at texture coordinates.
   [[nodiscard]] Eigen::Vector3d photo_of(const Eigen::Vector2d& texture) const {
     return photo_colour(
@@ -128,7 +128,6 @@ bool SeenSurface::at_silhouette(int x, int y) const {
 void SeenSurface::mark_silhouettes() {
   outer_.assign(nearest_.triangle.size(), 0);
   if (disagreement_ == 0) return;
-  constexpr double kMixed = 1;
   const double reach = disagreement_ + kMixed;
   const int most = static_cast<int>(reach);
   for (int y = 0; y < grid_.height; ++y) {
@@ -171,7 +170,7 @@ SeenPoint SeenSurface::look_at(const Eigen::Vector3d& point, const Eigen::Vector
     for (const int i : {0, 1}) {
       const int column = std::clamp(static_cast<int>(std::floor(at.x())) + i, 0, grid_.width - 1);
       const int row = std::clamp(static_cast<int>(std::floor(at.y())) + j, 0, grid_.height - 1);
-      if (outer_[pixel(column, row)] != 0) return {true, {}};
+      if (is_unsafe(pixel(column, row))) return {true, {}};
     }
   }
   return {true, photo_of(texture)};
@@ -244,8 +243,8 @@ class PatternBaker {
         colour_(covered_.triangle.size(), Eigen::Vector3d::Constant(255)),
         source_(covered_.triangle.size(), TexelSource::none) {}
 
-  /// @param reach  of `continue_patches`; @param bleed beyond borders (pixels)
-  BakedPattern bake(double reach, int bleed);
+  /// @param step, reach  of `continue_patches`; @param bleed beyond borders (pixels)
+  BakedPattern bake(int step, double reach, int bleed);
 
  private:
   [[nodiscard]] int patch_at(std::size_t texel) const {
@@ -253,7 +252,7 @@ class PatternBaker {
     return result_.surface.patch[t];
   }
   void colour_texel(std::size_t texel);
-  void continue_patches(double reach);
+  void continue_patches(int step, double reach);
   void fill_hidden();
   void bleed_once();
 
@@ -264,6 +263,9 @@ class PatternBaker {
   NearestTriangles covered_;
   std::vector<Eigen::Vector3d> colour_;
   std::vector<TexelSource> source_;
+  /// What texels beside silhouettes are where no colour reaches them; `colour_` has a mirror
+  /// image's.
+  std::map<std::size_t, TexelSource> out_of_reach_;
 };
 
 void PatternBaker::colour_texel(std::size_t texel) {
@@ -286,41 +288,38 @@ void PatternBaker::colour_texel(std::size_t texel) {
     point = mirrored(plane, point);
     normal = reflected(normal);
   }
-  SeenPoint found = seen_.look_at(point, normal, texture);
-  source_[texel] = TexelSource::seen;
-  if (!found.seen) {
-    const Eigen::Vector3d image = mirrored(plane, point);
-    found = seen_.look_at(image, reflected(normal), seen_.projected(image));
-    source_[texel] = found.seen ? TexelSource::mirrored : TexelSource::flat;
+  const SeenPoint own = seen_.look_at(point, normal, texture);
+  if (own.colour) {
+    source_[texel] = TexelSource::seen;
+    colour_[texel] = *own.colour;
+    return;
   }
-  if (found.colour) {
-    colour_[texel] = *found.colour;
-  } else if (found.seen) {
-    source_[texel] = TexelSource::beside;
-  }
+  const Eigen::Vector3d image = mirrored(plane, point);
+  const SeenPoint other = seen_.look_at(image, reflected(normal), seen_.projected(image));
+  if (other.colour) colour_[texel] = *other.colour;
+  const TexelSource hidden = other.colour ? TexelSource::mirrored : TexelSource::flat;
+  const bool beside = own.seen || (other.seen && !other.colour);
+  source_[texel] = beside ? TexelSource::beside : hidden;
+  if (beside) out_of_reach_.emplace(texel, hidden);
 }
 
 /// Colours beside silhouettes: those of the rest of their patch go on, on the cloth, where lines
-/// are as straight as they were woven. What is out of reach is hidden.
-/// @param reach  largest distance (pixels)
-void PatternBaker::continue_patches(double reach) {
-  const std::size_t count = result_.patches.size();
-  std::vector<std::vector<std::size_t>> region(count), fill(count);
-  PixelImage safe{grid_.width, grid_.height, {}};
-  for (const Eigen::Vector3d& c : colour_) safe.pixels.push_back(rounded_colour(c));
+/// are as straight as they were woven; out of reach they are what a hidden place has.
+/// @param step, reach  of `ContinuedPatches`
+void PatternBaker::continue_patches(int step, double reach) {
+  ContinuedPatches patches(grid_.width, grid_.height, step,
+                           static_cast<int>(result_.patches.size()));
   for (std::size_t i = 0; i < source_.size(); ++i) {
-    if (source_[i] == TexelSource::none || source_[i] == TexelSource::flat) continue;
-    (source_[i] == TexelSource::beside ? fill : region)[patch_at(i)].push_back(i);
+    if (source_[i] == TexelSource::seen || source_[i] == TexelSource::mirrored)
+      patches.know(i, patch_at(i), colour_[i]);
   }
-  for (std::size_t patch = 0; patch < count; ++patch) {
-    const std::vector<Eigen::Vector3d> colours =
-        continued_colours(safe, region[patch], fill[patch], reach);
-    for (std::size_t i = 0; i < colours.size(); ++i) {
-      if (colours[i](0) >= 0) {
-        colour_[fill[patch][i]] = colours[i];
-      } else {
-        source_[fill[patch][i]] = TexelSource::flat;
-      }
+  for (const auto& [texel, hidden] : out_of_reach_) patches.want(texel, patch_at(texel));
+  patches.fill(reach);
+  for (const auto& [texel, hidden] : out_of_reach_) {
+    if (const auto colour = patches.colour(texel, patch_at(texel))) {
+      colour_[texel] = *colour;
+    } else {
+      source_[texel] = hidden;
     }
   }
 }
@@ -374,10 +373,10 @@ void PatternBaker::bleed_once() {
   source_ = std::move(grown);
 }
 
-BakedPattern PatternBaker::bake(double reach, int bleed) {
+BakedPattern PatternBaker::bake(int step, double reach, int bleed) {
   for (std::size_t i = 0; i < source_.size(); ++i)
     if (covered_.covered(i)) colour_texel(i);
-  continue_patches(reach);
+  continue_patches(step, reach);
   BakedPattern baked;
   baked.grid = grid_;
   double all = 0;
@@ -423,11 +422,13 @@ BakedPattern bake_pattern(const View& view, const PixelImage& photo, const OneVi
   const PatternInSpace pieces = merged_pieces(pattern);
   const double photo_pixel = view.picture.size.x() / photo.width;
   const PixelGrid grid = pattern_grid(pieces.flat, photo_pixel, options);
-  // Four times what the picture may be off by, of what is turned away from the eye.
+  const int step = std::max(1, static_cast<int>(photo_pixel / grid.pixel));
+  // On the pattern, what is seen at a slant is longer than in the picture.
   constexpr double kReach = 4, kLeastFacing = 0.05;
-  const double reach = kReach * (result.disagreement + 1) /
-                       std::max(options.least_facing, kLeastFacing) * photo_pixel / grid.pixel;
-  return PatternBaker(seen, result, pieces, grid).bake(reach, options.bleed);
+  const double reach = kReach * (result.disagreement + kMixed) /
+                       std::max(options.least_facing, kLeastFacing) * photo_pixel /
+                       (step * grid.pixel);
+  return PatternBaker(seen, result, pieces, grid).bake(step, reach, options.bleed);
 }
 
 }  // namespace geoprior::sketch

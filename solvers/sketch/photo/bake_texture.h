@@ -26,9 +26,9 @@ struct BakedPattern {
   PixelGrid grid;       ///< places of its pixels in the pattern (m)
   double seen = 0;      ///< share of the pieces' area that the photograph shows
   double mirrored = 0;  ///< … that is hidden, but whose mirror image is seen
-  double continued =
-      0;            ///< … that is seen so near to a silhouette that it is continued from around
-  double flat = 0;  ///< … that nothing shows
+  /// … that is seen so near to a silhouette that colours go on from around
+  double continued = 0;
+  double flat = 0;  ///< … that nothing shows, or beside silhouettes out of reach
 };
 
 /// Colours of the flat pieces from the photograph (thesis 2.1.3: the hidden half has the texture of

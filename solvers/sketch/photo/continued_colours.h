@@ -13,10 +13,12 @@ namespace geoprior::sketch {
 ///
 /// Pixels are filled in the order of their distance from the region. Each gets the nearest colour
 /// along the line through it along which the picture changes least: the minor axis of the structure
-/// tensor of brightness of what has a colour within five pixels. Where no direction stands out of
-/// noise it gets the mean of what is around. So a line goes straight on at any angle, where the
-/// colours of the nearest pixels would bend it to meet the border squarely. Nothing is invented:
-/// what ends within the region stays away.
+/// tensor of the region's brightness about it, the farther from the region the wider. Where no
+/// direction stands out of noise, or the line meets nothing nearer to the region within eight
+/// pixels, as one beside the border that runs along it, it is the mean of what is around. So lines
+/// go straight on, where the colours of the nearest pixels would bend them to meet the border
+/// squarely. Nothing is invented: what ends within the region stays away. Colours of equal
+/// brightness have no lines.
 ///
 /// @param region  pixels whose colours count, row by row as in the picture
 /// @param fill    pixels to be filled, none of the region

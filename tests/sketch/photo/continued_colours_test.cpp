@@ -68,12 +68,46 @@ Errors errors_at(double angle, int width) {
 }
 
 // Three pixels are what a drawing that is two pixels off asks for.
-TEST(ContinuedColours, LinesGoStraightOnAtAnyAngle) {
-  for (const double degrees : {-50.0, -35.0, -20.0, 20.0, 35.0, 50.0}) {
+TEST(ContinuedColours, LinesGoStraightOn) {
+  for (const double degrees : {-65.0, -50.0, -35.0, -20.0, 20.0, 35.0, 50.0, 65.0}) {
     const Errors errors = errors_at(degrees * kDegree, 3);
     EXPECT_LT(errors.continued, 0.4 * errors.nearest) << degrees;
   }
   EXPECT_LT(errors_at(0, 3).continued, 3) << "square to the border, where the nearest is right";
+}
+
+// Nothing of the region lies on lines that run beside it: the nearest colours are as good.
+TEST(ContinuedColours, LinesAlongTheBorderAreNoWorseThanTheNearestColour) {
+  for (const double degrees : {-85.0, -75.0, 75.0, 85.0, 90.0}) {
+    const Errors errors = errors_at(degrees * kDegree, 3);
+    EXPECT_LT(errors.continued, 1.1 * errors.nearest) << degrees;
+  }
+}
+
+// A seam beside the border, on cloth that gets lighter: pixels are not read in the order in which
+// they are filled.
+TEST(ContinuedColours, AMirroredPictureIsContinuedAlike) {
+  PixelImage image{kWidth, kHeight, {}}, mirrored;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto grey = static_cast<std::uint8_t>(x == kBorder - 4 ? 30 : 90 + y);
+      image.pixels.push_back({grey, grey, grey});
+    }
+  }
+  mirrored = image;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) mirrored.at(x, y) = image.at(x, kHeight - 1 - y);
+  const Split split = at_border(3);
+  const auto one = continued_colours(image, split.region, split.fill, 100);
+  const auto other = continued_colours(mirrored, split.region, split.fill, 100);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const std::size_t image_of_i = (kHeight - 1 - i / 3) * 3 + i % 3;
+    EXPECT_NEAR(one[i](0), other[image_of_i](0), 1) << i;
+    const int y = static_cast<int>(i / 3);
+    if (y >= 15 && y < kHeight - 15) {
+      EXPECT_NEAR(one[i](0), 90 + y, 3) << i;
+    }
+  }
 }
 
 TEST(ContinuedColours, OneColourStaysAndOutsideColoursDoNotCount) {
