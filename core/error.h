@@ -18,4 +18,11 @@ class Error : public std::runtime_error {
                            (allowed.empty() ? "" : " (allowed: " + allowed + ")")) {}
 };
 
+/// A method that a scene is not for: nothing is wrong with either. Of a run it ends the variant
+/// only, and the others run.
+class NotApplicable : public Error {
+ public:
+  using Error::Error;
+};
+
 }  // namespace geoprior

@@ -174,8 +174,11 @@ def failures(run):
             if v.status != "done":
                 of = f" of case {case.name}" if len(run.cases) > 1 else ""
                 why = f": {v.error}" if v.error else ""
-                lines.append(f"{display_name(v.name)}{of} {v.status} after {len(v.parameter)} "
-                             f"{'frame' if len(v.parameter) == 1 else 'frames'}{why}")
+                count = len(v.parameter)
+                how = f"{v.status} after {count} {'frame' if count == 1 else 'frames'}"
+                if v.status == "failed" and count == 0:
+                    how = "cannot run"
+                lines.append(f"{display_name(v.name)}{of} {how}{why}")
     return lines
 
 

@@ -59,18 +59,34 @@ CLI::App* add_command(CommandLine& line, const std::string& name, const std::str
   return command;
 }
 
+/// An experiment that stands behind values of an option is none of them.
+/// @param is_value  whether a word may be a value
+void give_back_experiment(std::vector<std::string>& values, std::string& experiment,
+                          bool (*is_value)(const std::string&)) {
+  if (!experiment.empty() || values.empty() || is_value(values.back())) return;
+  experiment = values.back();
+  values.pop_back();
+}
+
 void add_run(CommandLine& line) {
   CLI::App* run = add_command(line, "run", "run an experiment and record it");
   RunRequest& request = line.run;
   LoadRequest& load = request.experiment.load;
-  run->add_option("experiment", request.experiment.id_or_file, "identifier or .toml file")
-      ->required();
-  run->add_option("--variant", load.variants, "run only these variants")
-      ->allow_extra_args(false)
-      ->type_name("NAME");
+  std::string& experiment = request.experiment.id_or_file;
+  run->add_option("experiment", experiment, "identifier or .toml file");
+  run->add_option("--variant", load.variants, "run only these variants")->type_name("NAME");
   run->add_option("--set", load.sets, "override a key of the file with a TOML value")
-      ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  run->parse_complete_callback([&load, &experiment] {
+    // No name of a variant has a slash or a dot, every setting has an equals sign.
+    give_back_experiment(load.variants, experiment, [](const std::string& word) {
+      return word.find_first_of("/.") == std::string::npos;
+    });
+    give_back_experiment(load.sets, experiment, [](const std::string& word) {
+      return word.find('=') != std::string::npos;
+    });
+    if (experiment.empty()) throw CLI::RequiredError("experiment");
+  });
   run->add_flag("--quick", load.quick, "the small version, as [quick] says");
   run->add_option("--threads", load.threads, "at most so many threads; 0: all")
       ->check(CLI::Range(0, 1024))

@@ -165,8 +165,8 @@ std::vector<std::string> failures(const RunRecord& record) {
   for (const CaseRecord& in : record.cases) {
     for (const VariantRecord& variant : in.variants) {
       if (variant.status != "failed") continue;
-      lines.push_back("variant '" + variant.name + "', case '" + in.name + "': failed after " +
-                      frames_text(variant.frames.size()) + ": " + variant.error);
+      lines.push_back("variant '" + variant.name + "', case '" + in.name +
+                      "': " + failure_text(variant.frames.size(), variant.error));
     }
   }
   return lines;

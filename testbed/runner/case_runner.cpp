@@ -294,6 +294,23 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
   recorder_.add(line);
 }
 
+void CaseRunner::tell_failure(const VariantSpec& variant, const std::string& error) {
+  progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' " +
+                failure_text(state_of(variant).record.frames.size(), error));
+  for (const std::string& warning : state_.case_of(spec_.name).record.warnings)
+    progress_.say("  the scene's warning may be why: " + warning);
+}
+
+void CaseRunner::refuse(const VariantSpec& variant, const NotApplicable& reason) {
+  if (!state_of(variant).begun) recorder_.add(journal::BeginLine{place(variant), {}});
+  journal::EndLine end;
+  end.place = place(variant);
+  end.error = reason.what();
+  tell_failure(variant, end.error);
+  finish(variant, std::move(end));
+  progress_.end();
+}
+
 bool CaseRunner::run_variant(const VariantSpec& variant) {
   progress_.begin(experiment_.id + " " + spec_.name + "/" + variant.name);
   kept_ = KeptFrames(kMostKept);
@@ -313,15 +330,25 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
   if (!complete) return false;
   end.memory = memory.use();
   if (!end.error.empty()) {
-    progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' failed after " +
-                  frames_text(state_of(variant).record.frames.size()) + ": " + end.error);
-    for (const std::string& warning : state_.case_of(spec_.name).record.warnings) {
-      progress_.say("  the scene's warning may be why: " + warning);
-    }
+    tell_failure(variant, end.error);
   }
   finish(variant, std::move(end));
   progress_.end();
   return true;
+}
+
+bool CaseRunner::run_or_refuse(const VariantSpec& variant) {
+  try {
+    return run_variant(variant);
+  } catch (const NotApplicable& reason) {
+    const bool others_may =
+        std::any_of(spec_.variants.begin(), spec_.variants.end(), [&](const VariantSpec& other) {
+          return &other != &variant && state_of(other).record.status != "failed";
+        });
+    if (!others_may || !state_of(variant).record.frames.empty()) throw;
+    refuse(variant, reason);
+    return true;
+  }
 }
 
 void CaseRunner::log_error(const journal::Place& at, const std::string& message) {
@@ -341,7 +368,7 @@ bool CaseRunner::run(const OptionSet& options, std::vector<StoredFile> inputs, b
     }
     if (stop_requested()) return false;
     try {
-      if (!run_variant(*variant)) return false;
+      if (!run_or_refuse(*variant)) return false;
     } catch (const Error& error) {
       log_error(place(*variant), error.what());
       std::string key = place_of_scene_key(spec_.scene_places, error.what());
@@ -370,7 +397,7 @@ constexpr int kProcessWarmUp = 0;
 bool CaseRunner::time_poses(std::map<std::string, Timing>& timing) {
   std::vector<BenchmarkEntry> entries;
   for (const VariantSpec& variant : spec_.variants) {
-    if (is_null_control(variant.role)) continue;
+    if (is_null_control(variant.role) || state_of(variant).record.status == "failed") continue;
     MethodEntry::Instance& instance = prepare(variant, false);
     if (auto* method = std::get_if<std::unique_ptr<PoseMethod>>(&instance)) {
       entries.push_back({variant.name, method->get()});

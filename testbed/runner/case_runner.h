@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "testbed/runner/benchmark.h"
 #include "testbed/runner/journal/recorded_frames.h"
 #include "testbed/runner/journal/recorder.h"
@@ -20,8 +21,10 @@ namespace geoprior {
 /// Runs the variants of one case that are not done yet, then times them.
 ///
 /// An Error that a process throws after its first frame ends that variant: its frames stay, its
-/// record has the status "failed" with the message, the other variants run. Any other Error (bad
-/// input, a full disk, a metric that cannot be measured) ends the run.
+/// record has the status "failed" with the message, the other variants run. So does a method that
+/// is not for the scene (`NotApplicable`) before its first frame, unless that is so of all variants
+/// of the case. Any other Error (bad input, a full disk, a metric that cannot be measured) ends the
+/// run.
 class CaseRunner {
  public:
   CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,
@@ -48,6 +51,9 @@ class CaseRunner {
   void load(const OptionSet& options, std::vector<StoredFile> inputs);
   MethodEntry::Instance& prepare(const VariantSpec& variant, bool log);
   bool run_variant(const VariantSpec& variant);
+  bool run_or_refuse(const VariantSpec& variant);
+  void refuse(const VariantSpec& variant, const NotApplicable& reason);
+  void tell_failure(const VariantSpec& variant, const std::string& error);
   bool run_poses(const VariantSpec& variant, PoseMethod& method, TimedContext& context);
   bool run_process(const VariantSpec& variant, Process& process, TimedContext& context,
                    journal::EndLine& end);

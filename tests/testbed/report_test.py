@@ -19,6 +19,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -616,6 +617,13 @@ class RunTest(unittest.TestCase):
         summary.main([str(self.folder)])
         self.assertIn("**Implicit failed after 3 frames: time 0.5 s",
                       (self.folder / "summary.md").read_text(encoding="utf-8"))
+
+    def test_a_variant_without_a_frame_could_not_run(self):
+        refused = SimpleNamespace(name="implicit", status="failed", error="an open mesh", parameter=[])
+        broken = SimpleNamespace(name="hybrid", status="failed", error="", parameter=[0.0])
+        run = SimpleNamespace(cases=[SimpleNamespace(name="default", variants=[refused, broken])])
+        self.assertEqual(tables.failures(run),
+                         ["Implicit cannot run: an open mesh", "Hybrid failed after 1 frame"])
 
     def test_nothing_is_read_or_written_through_a_link(self):
         victim = self.folder.with_name(self.folder.name + "-victim")

@@ -86,8 +86,7 @@ void ask_null(const ClaimSpec& claim, const Judgement* own, JudgeNull judge_null
 std::optional<std::string> fallen_short(const VariantRecord& variant, const VariantRecord* of) {
   for (const VariantRecord* side : {&variant, of}) {
     if (side == nullptr || side->status != "failed") continue;
-    return "variant '" + side->name + "' failed after " + frames_text(side->frames.size()) + ": " +
-           side->error;
+    return "variant '" + side->name + "' " + failure_text(side->frames.size(), side->error);
   }
   return std::nullopt;
 }

@@ -109,8 +109,7 @@ const VariantRecord& require_variant(const ClaimSpec& claim, const CaseRecord& i
     throw Error("has no variant '" + name + "'",
                 "claim '" + claim.text + "', case '" + in.name + "'");
   }
-  throw Error("variant '" + name + "' failed after " + frames_text(variant->frames.size()) + ": " +
-                  variant->error,
+  throw Error("variant '" + name + "' " + failure_text(variant->frames.size(), variant->error),
               "claim '" + claim.text + "', case '" + in.name + "'");
 }
 

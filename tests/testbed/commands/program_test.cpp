@@ -156,6 +156,23 @@ TEST_F(Program, RunRecordsAndDecidesClaims) {
                              HasSubstr("claims   falls short in 1")));
 }
 
+TEST_F(Program, VariantsAndSettingsMayFollowEachOtherOrTheExperimentThem) {
+  write(disc_experiment("segments = 16"));
+  const std::vector<std::string> orders{
+      "run toy-circle/disc --no-pictures --json --variant polygon exact",
+      "run toy-circle/disc --no-pictures --json --variant polygon --variant exact",
+      "run --no-pictures --json --variant polygon exact toy-circle/disc",
+      "run --no-pictures --json --set scene.radius_m=1 seed=1 toy-circle/disc"};
+  for (const std::string& order : orders) {
+    const Outcome outcome = run(order);
+    EXPECT_EQ(outcome.code, 0) << order << "\n" << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out)["cases"][0]["variants"].size(), 2U) << order;
+  }
+  const Outcome none = run("run --variant polygon exact");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("experiment is required"));
+}
+
 TEST_F(Program, AVariantThatFailsExitsWithOneAndItsFramesAreKept) {
   home_.write("experiments/toy-pendulum/swing.toml", R"(
 title = "A pendulum that breaks off"
@@ -190,6 +207,46 @@ method = "closed-form"
   EXPECT_EQ(check.code, 1) << "the values are those blessed, but the variant failed";
   EXPECT_EQ(json::parse(check.out)["experiments"][0]["failures"].size(), 1U);
   EXPECT_EQ(json::parse(check.out)["experiments"][0]["mismatches"].size(), 0U);
+}
+
+TEST_F(Program, AVariantThatCannotRunExitsWithOneAndTheOthersAreJudged) {
+  home_.write("experiments/toy-circle/refused.toml", R"(
+title = "A disc that one method is not for"
+topic = "toy-circle"
+[scene]
+motion = { frames = 2 }
+[[variant]]
+name = "too-fine"
+method = "polygon"
+options = { segments = 50000 }
+[[variant]]
+name = "polygon"
+method = "polygon"
+[[variant]]
+name = "exact"
+method = "exact"
+[[claim]]
+text = "sixteen corners stay near"
+metric = "radius_error"
+variant = "polygon"
+value = 0.1
+null = "exact"
+)");
+  const Outcome outcome = run("run toy-circle/refused --no-pictures --json");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("variant 'too-fine' of case 'default' cannot run: disc: 50000 "
+                                     "corners (allowed: 1000 a point)"));
+  const json result = json::parse(outcome.out);
+  EXPECT_EQ(result["claims"][0]["holds"], true);
+  EXPECT_EQ(run("measure toy-circle/refused --no-pictures").code, 1);
+  EXPECT_EQ(
+      run("export toy-circle/refused --format obj --out " + (home_.root() / "exported").string())
+          .code,
+      0);
+  ASSERT_EQ(run("bless toy-circle/refused --reason test").code, 0);
+  EXPECT_EQ(run("check toy-circle/refused").code, 1);
+  const Outcome alone = run("run toy-circle/refused --no-pictures --variant too-fine");
+  EXPECT_EQ(alone.code, 2) << "nothing else to see";
 }
 
 TEST_F(Program, BadInputExitsWithTwoAndLeavesNothingBehind) {

@@ -265,6 +265,81 @@ TEST_F(FailedProcess, StaysFailedWhenTheRunIsResumed) {
   EXPECT_EQ(variant_of(again.record, "euler").frames.size(), 4U);
 }
 
+/// A variant whose method the scene is not for; `exact` or all others as they are.
+class RefusedMethod : public Execute {
+ protected:
+  [[nodiscard]] fs::path refused() const {
+    return write_experiment("toy-circle/refused", text_of(circle()) + R"(
+[[variant]]
+name = "too-fine"
+method = "polygon"
+reference = "exact"
+options = { segments = 50000 }
+[[variant]]
+name = "coarse"
+method = "polygon"
+reference = "too-fine"
+[[claim]]
+text = "finer is nearer"
+metric = "radius_error"
+variant = "too-fine"
+of = "polygon"
+[[claim]]
+text = "a hexagon stays near"
+metric = "radius_error"
+variant = "polygon"
+value = 1
+)");
+  }
+};
+
+TEST_F(RefusedMethod, FailsAloneAndTheOtherVariantsRun) {
+  const ExecuteResult result = run(load(refused()), out());
+  const VariantRecord& fine = variant_of(result.record, "too-fine");
+  EXPECT_EQ(fine.status, "failed");
+  EXPECT_THAT(fine.error, HasSubstr("50000 corners"));
+  EXPECT_TRUE(fine.frames.empty());
+  EXPECT_FALSE(fine.timing.contains("solve"));
+  for (const std::string other : {"polygon", "exact", "coarse"}) {
+    EXPECT_EQ(variant_of(result.record, other).status, "done") << other;
+    EXPECT_EQ(variant_of(result.record, other).frames.size(), 4U) << other;
+    EXPECT_TRUE(variant_of(result.record, other).timing.contains("solve")) << other;
+  }
+  ASSERT_EQ(result.record.claims.size(), 2U);
+  EXPECT_FALSE(result.record.claims[0].holds);
+  EXPECT_THAT(result.record.claims[0].detail, HasSubstr("variant 'too-fine' cannot run"));
+  EXPECT_TRUE(result.record.claims[1].holds);
+  const VariantRecord read = variant_of(read_run_file(out() / "run.h5"), "too-fine");
+  EXPECT_EQ(read.status, "failed");
+  EXPECT_EQ(read.error, fine.error);
+}
+
+TEST_F(RefusedMethod, StaysRefusedWhenTheRunIsResumed) {
+  run(load(refused()), out());
+  fs::remove(out() / "run.h5");
+  const ExecuteResult again = run(load(refused()), out(), true);
+  EXPECT_EQ(variant_of(again.record, "too-fine").status, "failed");
+  EXPECT_EQ(variant_of(again.record, "coarse").frames.size(), 4U);
+}
+
+TEST_F(RefusedMethod, OfAllVariantsEndsTheRun) {
+  const fs::path file = write_experiment("toy-circle/alone", R"(
+title = "No method is for this disc"
+topic = "toy-circle"
+[[variant]]
+name = "too-fine"
+method = "polygon"
+options = { segments = 50000 }
+[[variant]]
+name = "finer"
+method = "polygon"
+options = { segments = 60000 }
+)");
+  EXPECT_THAT(error_of([&] { run(load(file), out()); }),
+              AllOf(HasSubstr("60000 corners"), HasSubstr("variant 'finer'")));
+  EXPECT_FALSE(fs::exists(out() / "run.h5"));
+}
+
 TEST_F(Execute, RefusesAFolderThatIsNotEmpty) {
   fs::create_directories(out());
   std::ofstream(out() / "precious") << "data";

@@ -77,6 +77,18 @@ TEST(Cells, AVariantThatFailedBeforeTheStateIsNotDrawnInAnother) {
   EXPECT_TRUE(rows[1].cells[1].part.has_value());
 }
 
+TEST(Cells, AVariantThatCouldNotRunSaysSo) {
+  const TestFolder folder;
+  RunRecord record = make_fake_run(folder.path);
+  VariantRecord& failed = record.cases[0].variants[0];
+  failed.status = "failed";
+  failed.frames.clear();
+  const auto rows = collect_cells(OpenedRun(folder.path, record), {});
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].cells[0].note, "cannot run");
+  EXPECT_TRUE(rows[0].cells[1].part.has_value());
+}
+
 // Ten iterations of one method and a hundred of another are not one state.
 TEST(Cells, LastFramesAtSeveralParametersAreLabelledAsTheLast) {
   const TestFolder folder;

@@ -191,6 +191,10 @@ std::vector<MethodEntry> circle_methods() {
           method_entry<CircleScene, PolygonOptions>(
               "polygon", true, "points on a regular polygon", "Archimedes",
               [](const CircleScene& scene, const PolygonOptions& options, RunContext&) {
+                if (options.segments > 1000 * scene.options.points) {
+                  throw NotApplicable(std::to_string(options.segments) + " corners", "disc",
+                                      "1000 a point");
+                }
                 const double r = scene.options.radius_m;
                 return std::make_unique<CircleMethod>(
                     scene, [r, options](double phi) { return polygon_radius(r, options, phi); });
