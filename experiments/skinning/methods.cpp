@@ -3,6 +3,7 @@
 #include "baselines/skinning/direct_delta_mush/direct_delta_mush.h"
 #include "baselines/skinning/dual_quaternion/dual_quaternion.h"
 #include "baselines/skinning/linear_blend/linear_blend.h"
+#include "core/error.h"
 #include "core/geometry/topology.h"
 #include "experiments/skinning/scene/scene.h"
 #include "experiments/skinning/topic.h"
@@ -62,7 +63,11 @@ Part bones_part(const SkinningScene& scene, const Pose& pose) {
 void require_solid(const SkinningScene& scene, const std::string& who) {
   const std::string where =
       scene.input_files.empty() ? "mesh" : scene.input_files.front().string() + ", welded vertices";
-  require_closed_manifold(scene.rig.mesh, who, where);
+  try {
+    require_closed_manifold(scene.rig.mesh, who, where);
+  } catch (const Error& error) {
+    throw NotApplicable(error.what());
+  }
 }
 
 /// Wraps a class with `deform(pose, posed)` or `deform(pose, posed, context)`. The scene must

@@ -5,11 +5,11 @@
 #include <numbers>
 #include <optional>
 
-#include "baselines/skinning/dual_quaternion/dual_quaternion.h"
 #include "core/error.h"
 #include "core/geometry/topology.h"
 #include "core/limits.h"
 #include "core/parallel.h"
+#include "solvers/skinning/base_skin.h"
 #include "solvers/skinning/field/composition.h"
 #include "solvers/skinning/projection/contact_smoothing.h"
 #include "solvers/skinning/projection/pose_path.h"
@@ -86,7 +86,7 @@ Float4 row_of(const Eigen::MatrixX3d& V, int v) {
 struct ImplicitSkinning::Impl {
   Impl(const RiggedMesh& rig, const ImplicitOptions& chosen, const RunContext& context)
       : options(chosen),
-        dual_quaternions(rig),
+        base(rig, chosen.base),
         joint_count(rig.skeleton.size()),
         graph(one_rings(rig.mesh.F, rig.mesh.vertex_count())),
         partition(partition_bones(rig, options.partition, options.radius_scale)),
@@ -126,7 +126,7 @@ struct ImplicitSkinning::Impl {
   void finish(Eigen::MatrixX3d& posed);
 
   ImplicitOptions options;
-  DualQuaternionBlend dual_quaternions;
+  BaseSkin base;
   int joint_count;
   VertexGraph graph;
   BonePartition partition;
@@ -141,7 +141,7 @@ struct ImplicitSkinning::Impl {
 };
 
 void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
-  dual_quaternions.deform(pose, posed);
+  base.deform(pose, posed);
   field.set_pose(pose);
   iterations = 0;
   std::fill(state.beta.begin(), state.beta.end(), 0.0F);

@@ -45,11 +45,11 @@ class ImplicitSkinning {
   /// Writes the posed positions (n x 3, metres). Phases "start", "projection", "relaxation",
   /// "smoothing". No allocation once warm; the same bits for any number of threads.
   /// @param pose   m transforms; parts that are not rigid are dropped
-  /// @throws Error unless `pose` has m finite transforms, and when a path begins away from rest
+  /// @throws Error unless `pose` has m finite transforms
   void deform(const Pose& pose, Eigen::MatrixX3d& posed, RunContext& context);
 
   /// Whether `deform` begins where the call before ended (`ProjectionKind::tracking`): poses must
-  /// come in order, and the first is the rest pose, moved as a whole or not.
+  /// come in order, and the first is reached from rest.
   [[nodiscard]] bool path_dependent() const;
   /// The next call of `deform` is the first of a path.
   void restart();

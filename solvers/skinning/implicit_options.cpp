@@ -14,6 +14,8 @@ constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
 constexpr std::array<std::string_view, 3> kProjectionNames{"smooth", "tracking", "marching"};
+constexpr std::array<std::string_view, 3> kBaseNames{"dual-quaternion", "centers-of-rotation",
+                                                     "direct-delta-mush"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
 
 void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
@@ -49,6 +51,7 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
 }
 
 void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
+  describe_choice(v, "base", o.base, kBaseNames, {.doc = "the skin that is corrected"});
   describe_choice(
       v, "projection", o.projection, kProjectionNames,
       {.doc = "one smooth correction, the same with contact that is tracked from pose to pose, or "

@@ -59,6 +59,9 @@ void describe(OptionVisitor& v, SamplingOptions& options);
 /// along its own gradient, as published (projection.h).
 enum class ProjectionKind { smooth, tracking, marching };
 
+/// What is corrected (base_skin.h).
+enum class BaseKind { dual_quaternion, centers_of_rotation, direct_delta_mush };
+
 /// The smooth correction. Lengths are shares of the local radius: the distance of the skin from its
 /// bone.
 struct SmoothOptions {
@@ -93,6 +96,7 @@ struct ImplicitOptions {
   double radius_scale = 1;
   int grid = 32;
 
+  BaseKind base = BaseKind::dual_quaternion;
   ProjectionKind projection = ProjectionKind::marching;
   SmoothOptions smooth;
 

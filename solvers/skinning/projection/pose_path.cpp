@@ -1,30 +1,13 @@
 #include "solvers/skinning/projection/pose_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <string>
 #include <utility>
-
-#include "core/error.h"
 
 namespace geoprior::skinning {
 namespace {
 
-/// Of a first pose: what a joint may be turned (radians) and carried away (m) by the round-off of
-/// files.
-constexpr double kTurnAtRest = 0.1 * std::numbers::pi / 180;
-constexpr double kAwayAtRest = 1e-4;
-
 double angle_of(const Eigen::Matrix3d& rotation) { return Eigen::AngleAxisd(rotation).angle(); }
-
-std::string short_number(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", x);
-  return text.data();
-}
 
 }  // namespace
 
@@ -38,26 +21,9 @@ Eigen::Isometry3d PosePath::against_parent(const Pose& pose, std::size_t joint) 
 
 int PosePath::go_to(const Pose& pose, double largest_turn) {
   if (!begun_) {
-    double farthest = 1;
-    std::string turned;
-    for (std::size_t j = 0; j < pose.size(); ++j) {
-      const Joint& joint = skeleton_.joints[j];
-      if (joint.parent < 0) continue;
-      const Eigen::Isometry3d local = against_parent(pose, j);
-      const double angle = angle_of(local.linear());
-      const double away = (local * joint.head - joint.head).norm();
-      const double off = std::max(angle / kTurnAtRest, away / kAwayAtRest);
-      if (off <= farthest) continue;
-      farthest = off;
-      turned = "joint '" + joint.name + "' is turned by " +
-               short_number(angle * 180 / std::numbers::pi) + " degrees and moved by " +
-               short_number(1000 * away) + " mm against its parent";
-    }
-    if (!turned.empty()) {
-      throw Error("the poses begin away from rest: " + turned,
-                  "implicit skinning that tracks contact", "a motion that begins in the rest pose");
-    }
-    from_ = pose;
+    // All joints where they are at rest against the first one, which is a root.
+    const Eigen::Affine3d whole(rigid_part(pose.front()));
+    from_.assign(pose.size(), whole);
     begun_ = true;
   } else {
     std::swap(from_, to_);

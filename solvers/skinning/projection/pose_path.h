@@ -12,15 +12,12 @@ class PosePath {
  public:
   explicit PosePath(Skeleton skeleton);
 
-  /// The next pose begins a path.
+  /// The next pose begins a path: it is reached from rest, moved as a whole with the first root.
   void restart() { begun_ = false; }
 
   /// Goes on to `pose`.
   /// @param largest_turn  of a joint against its parent in one step (radians)
   /// @return steps, at least 1
-  /// @throws Error  when `pose` begins a path and is not the rest pose, moved as a whole or
-  ///                not, within 0.1 degrees and 0.1 mm:
-  ///                names the joint that is turned farthest
   int go_to(const Pose& pose, double largest_turn);
 
   /// Pose after `step` of the steps, 1 … n. The last one is the pose that was gone to, bit by bit.

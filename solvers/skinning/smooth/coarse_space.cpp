@@ -15,7 +15,7 @@ constexpr float kBump = 2.2F;      // reach of a bump, in spacings
 constexpr float kDetour = 1.5F;    // along edges, over the reach of a bump
 
 constexpr int kIterations = 40;
-constexpr double kEnough = 3e-2;  // residual over that of the start
+constexpr double kCoarseEnough = 3e-2;  // residual over that of the start
 
 /// Distances along the edges of the rest surface.
 class Walk {
@@ -240,7 +240,7 @@ void CoarseSpace::solve(const std::vector<Demand>& demands, const std::vector<in
     value_[n] = search_[n] = Float4{};
     energy += static_cast<double>(inverse_[n] * dot3(sum, sum));
   }
-  const double enough = kEnough * kEnough * energy;
+  const double enough = kCoarseEnough * kCoarseEnough * energy;
   double last = 1;
   for (int i = 0; i < kIterations && energy > enough; ++i) {
     const auto keep = static_cast<float>(i == 0 ? 0 : energy / last);

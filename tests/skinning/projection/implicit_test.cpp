@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <numbers>
 
+#include "baselines/skinning/centers_of_rotation/centers_of_rotation.h"
+#include "baselines/skinning/direct_delta_mush/direct_delta_mush.h"
 #include "baselines/skinning/dual_quaternion/dual_quaternion.h"
 #include "core/error.h"
 #include "core/geometry/procedural.h"
@@ -420,16 +423,12 @@ TEST(Tracking, ForgetsWhatWasBeforeARestart) {
   EXPECT_TRUE((one.array() == two.array()).all());
 }
 
-TEST(Tracking, RefusesPosesThatBeginAwayFromRest) {
-  ImplicitSkinning skin = make(finger(), tracking());
-  try {
-    after(skin, {30});
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("joint 'middle' is turned by 30 degrees"),
-              std::string::npos)
-        << error.what();
-  }
+TEST(Tracking, WalksToAFirstPoseFromRest) {
+  ImplicitSkinning begun = make(finger(), tracking()), walked = make(finger(), tracking());
+  const Eigen::MatrixX3d one = after(begun, {110}), other = after(walked, {0, 110});
+  EXPECT_LE((one - other).rowwise().norm().maxCoeff(), 1e-6 * kFingerRadius);
+  begun.restart();
+  EXPECT_EQ(after(begun, {110}), one);
 }
 
 TEST(Tracking, MayBeginAnywhereInSpace) {
@@ -439,6 +438,59 @@ TEST(Tracking, MayBeginAnywhereInSpace) {
   Eigen::MatrixX3d posed;
   RunContext context;
   EXPECT_NO_THROW(skin.deform(pose, posed, context));
+}
+
+constexpr std::array<BaseKind, 3> kBases{BaseKind::dual_quaternion, BaseKind::centers_of_rotation,
+                                         BaseKind::direct_delta_mush};
+
+Eigen::MatrixX3d base_alone(BaseKind base, const Pose& pose) {
+  Eigen::MatrixX3d posed;
+  switch (base) {
+    case BaseKind::dual_quaternion:
+      DualQuaternionBlend(finger()).deform(pose, posed);
+      break;
+    case BaseKind::centers_of_rotation:
+      CentersOfRotation(finger()).deform(pose, posed);
+      break;
+    case BaseKind::direct_delta_mush:
+      DirectDeltaMush(finger()).deform(pose, posed);
+      break;
+  }
+  return posed;
+}
+
+TEST(Base, WithoutEvaluationsIsWhatStays) {
+  const Pose pose = bend(finger(), "middle", 90);
+  for (const ProjectionKind projection : {ProjectionKind::smooth, ProjectionKind::marching}) {
+    for (const BaseKind base : kBases) {
+      ImplicitOptions options;
+      options.projection = projection;
+      options.base = base;
+      options.smooth.evaluations = options.smooth.contact_evaluations = 0;
+      options.max_iterations = 0;
+      Eigen::MatrixX3d posed;
+      RunContext context;
+      make(finger(), options).deform(pose, posed, context);
+      EXPECT_LE((posed - base_alone(base, pose)).rowwise().norm().maxCoeff(), 1e-12);
+    }
+  }
+}
+
+// Whatever is corrected is at rest at rest, and moves where the bent finger touches itself.
+TEST(Base, StaysAtRestAndIsCorrectedWhereItTouches) {
+  for (const BaseKind base : kBases) {
+    ImplicitOptions options = smooth_projection();
+    options.base = base;
+    ImplicitSkinning skin = make(finger(), options);
+    Eigen::MatrixX3d posed;
+    RunContext context;
+    skin.deform(rest_pose(finger().skeleton.size()), posed, context);
+    EXPECT_LE((posed - finger().mesh.V).rowwise().norm().maxCoeff(), 1e-6 * kFingerRadius);
+    const Pose bent = bend(finger(), "middle", 110);
+    skin.deform(bent, posed, context);
+    EXPECT_GE((posed - base_alone(base, bent)).rowwise().norm().maxCoeff(), 0.02 * kFingerRadius);
+    EXPECT_GT(skin.diagnostics().at("stopped_fraction"), 0);
+  }
 }
 
 // A null: without evaluations there is nothing to follow.
