@@ -59,13 +59,14 @@ CLI::App* add_command(CommandLine& line, const std::string& name, const std::str
   return command;
 }
 
-/// An experiment that stands behind values of an option is none of them.
+/// An experiment that stands among values of an option is none of them.
 /// @param is_value  whether a word may be a value
 void give_back_experiment(std::vector<std::string>& values, std::string& experiment,
                           bool (*is_value)(const std::string&)) {
-  if (!experiment.empty() || values.empty() || is_value(values.back())) return;
-  experiment = values.back();
-  values.pop_back();
+  const auto other = std::find_if_not(values.begin(), values.end(), is_value);
+  if (!experiment.empty() || other == values.end()) return;
+  experiment = *other;
+  values.erase(other);
 }
 
 void add_run(CommandLine& line) {
@@ -73,7 +74,7 @@ void add_run(CommandLine& line) {
   RunRequest& request = line.run;
   LoadRequest& load = request.experiment.load;
   std::string& experiment = request.experiment.id_or_file;
-  run->add_option("experiment", experiment, "identifier or .toml file");
+  run->add_option("experiment", experiment, "identifier or .toml file; required");
   run->add_option("--variant", load.variants, "run only these variants")->type_name("NAME");
   run->add_option("--set", load.sets, "override a key of the file with a TOML value")
       ->type_name("KEY=VALUE");

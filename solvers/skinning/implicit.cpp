@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "baselines/skinning/shared/rigid_joints.h"
 #include "core/error.h"
 #include "core/geometry/topology.h"
 #include "core/limits.h"
@@ -96,12 +97,12 @@ struct ImplicitSkinning::Impl {
         projection(field, options),
         state(rig, graph, partition.bone_of_vertex) {
     if (partition.bones.empty()) {
-      throw Error("no joint moves enough vertices for a field", "implicit skinning",
-                  "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
+      throw NotApplicable("no joint moves enough vertices for a field", "implicit skinning",
+                          "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
     }
     if (std::ssize(partition.bones) > kMaxFieldBones) {
-      throw Error(std::to_string(partition.bones.size()) + " joints have skin of their own",
-                  "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
+      throw NotApplicable(std::to_string(partition.bones.size()) + " joints have skin of their own",
+                          "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
     }
     rotation.resize(3 * static_cast<std::size_t>(joint_count));
     field.set_pose(rest_pose(joint_count));
@@ -155,6 +156,7 @@ void ImplicitSkinning::Impl::start(const Pose& pose, Eigen::MatrixX3d& posed) {
 }
 
 void ImplicitSkinning::Impl::follow(const Pose& pose, Eigen::MatrixX3d& posed) {
+  require_finite_pose(pose, joint_count, "implicit skinning");
   const double largest_turn = options.smooth.tracking_step_deg * std::numbers::pi / 180;
   const int steps = path->go_to(pose, largest_turn);
   for (int step = 1; step < steps; ++step) {

@@ -12,7 +12,8 @@
 
 namespace geoprior::skinning {
 
-/// Implicit skinning (Vaillant et al. 2013; thesis 3.1): dual quaternion skinning, corrected by a
+/// Implicit skinning (Vaillant et al. 2013; thesis 3.1): dual quaternion skinning, or another base
+/// (base_skin.h; below it is meant where dual quaternions are named), corrected by a
 /// field that knows what the skin encloses.
 ///
 /// Once, in the rest pose: the skin is split among the bones; each part is turned into a field

@@ -297,6 +297,7 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
 void CaseRunner::tell_failure(const VariantSpec& variant, const std::string& error) {
   progress_.say("variant '" + variant.name + "' of case '" + spec_.name + "' " +
                 failure_text(state_of(variant).record.frames.size(), error));
+  if (could_not_run(state_of(variant).record)) return;
   for (const std::string& warning : state_.case_of(spec_.name).record.warnings)
     progress_.say("  the scene's warning may be why: " + warning);
 }
@@ -306,8 +307,8 @@ void CaseRunner::refuse(const VariantSpec& variant, const NotApplicable& reason)
   journal::EndLine end;
   end.place = place(variant);
   end.error = reason.what();
+  recorder_.add(end);
   tell_failure(variant, end.error);
-  finish(variant, std::move(end));
   progress_.end();
 }
 
@@ -341,11 +342,7 @@ bool CaseRunner::run_or_refuse(const VariantSpec& variant) {
   try {
     return run_variant(variant);
   } catch (const NotApplicable& reason) {
-    const bool others_may =
-        std::any_of(spec_.variants.begin(), spec_.variants.end(), [&](const VariantSpec& other) {
-          return &other != &variant && state_of(other).record.status != "failed";
-        });
-    if (!others_may || !state_of(variant).record.frames.empty()) throw;
+    if (!state_of(variant).record.frames.empty()) throw;
     refuse(variant, reason);
     return true;
   }

@@ -22,9 +22,8 @@ namespace geoprior {
 ///
 /// An Error that a process throws after its first frame ends that variant: its frames stay, its
 /// record has the status "failed" with the message, the other variants run. So does a method that
-/// is not for the scene (`NotApplicable`) before its first frame, unless that is so of all variants
-/// of the case. Any other Error (bad input, a full disk, a metric that cannot be measured) ends the
-/// run.
+/// is not for the scene (`NotApplicable`) before its first frame. Any other Error (bad input, a
+/// full disk, a metric that cannot be measured) ends the run.
 class CaseRunner {
  public:
   CaseRunner(const Experiment& experiment, const CaseSpec& spec, const Topic& topic,

@@ -204,9 +204,23 @@ void finish(const Experiment& experiment, const std::vector<Topic>& topics, bool
 bool has_results(const RunState& state) {
   return std::any_of(state.cases().begin(), state.cases().end(), [](const CaseState& one) {
     return std::any_of(one.variants.begin(), one.variants.end(), [](const VariantState& variant) {
-      return variant.ended || variant.checkpoint || !variant.record.frames.empty();
+      return (variant.ended && !could_not_run(variant.record)) || variant.checkpoint ||
+             !variant.record.frames.empty();
     });
   });
+}
+
+/// @throws Error  when no variant of any case could run: the reason of the first
+void require_one_that_ran(const RunState& state) {
+  if (has_results(state)) return;
+  for (const CaseState& one : state.cases()) {
+    for (const VariantState& variant : one.variants) {
+      if (could_not_run(variant.record)) {
+        throw Error(variant.record.error,
+                    "case '" + one.record.name + "', variant '" + variant.record.name + "'");
+      }
+    }
+  }
 }
 
 /// The request for the cases of a run in `folder`: its farewell speaks of that folder, also while
@@ -256,6 +270,7 @@ ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& t
     if (is_new) begin_run(experiment, recorder);
     result.stopped = !run_cases(experiment, topics, told_of(result.folder, request), make_input,
                                 recorder, state);
+    if (!result.stopped) require_one_that_ran(state);
   } catch (const std::exception&) {
     if (is_new && !has_results(state)) discard(result.folder, !request.out);
     throw;

@@ -265,7 +265,7 @@ class PatternBaker {
   std::vector<TexelSource> source_;
   /// What texels beside silhouettes are where no colour reaches them; `colour_` has a mirror
   /// image's.
-  std::map<std::size_t, TexelSource> out_of_reach_;
+  std::map<std::size_t, TexelSource> if_out_of_reach_;
 };
 
 void PatternBaker::colour_texel(std::size_t texel) {
@@ -300,7 +300,7 @@ void PatternBaker::colour_texel(std::size_t texel) {
   const TexelSource hidden = other.colour ? TexelSource::mirrored : TexelSource::flat;
   const bool beside = own.seen || (other.seen && !other.colour);
   source_[texel] = beside ? TexelSource::beside : hidden;
-  if (beside) out_of_reach_.emplace(texel, hidden);
+  if (beside) if_out_of_reach_.emplace(texel, hidden);
 }
 
 /// Colours beside silhouettes: those of the rest of their patch go on, on the cloth, where lines
@@ -313,9 +313,9 @@ void PatternBaker::continue_patches(int step, double reach) {
     if (source_[i] == TexelSource::seen || source_[i] == TexelSource::mirrored)
       patches.know(i, patch_at(i), colour_[i]);
   }
-  for (const auto& [texel, hidden] : out_of_reach_) patches.want(texel, patch_at(texel));
+  for (const auto& [texel, hidden] : if_out_of_reach_) patches.want(texel, patch_at(texel));
   patches.fill(reach);
-  for (const auto& [texel, hidden] : out_of_reach_) {
+  for (const auto& [texel, hidden] : if_out_of_reach_) {
     if (const auto colour = patches.colour(texel, patch_at(texel))) {
       colour_[texel] = *colour;
     } else {

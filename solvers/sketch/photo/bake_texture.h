@@ -44,9 +44,10 @@ struct BakedPattern {
 /// What lies nearer to a silhouette in the picture than photograph and drawing may disagree
 /// (`OneViewResult::disagreement`), one pixel more for the mixed pixels along an edge, is not read:
 /// else a traced line that is two pixels off paints the background, or what lies behind or beside,
-/// along the borders of panels. On the pattern the colours of the rest of the patch go on there
-/// (`continued_colours`). Silhouettes here are where the surface ends in the picture, its depth
-/// jumps, or another patch begins.
+/// along the borders of panels. Nor is what is thinner than a pixel. On the pattern the colours of
+/// the rest of the patch go on there (`ContinuedPatches`), its own and those of mirror images; out
+/// of their reach it counts as hidden. Silhouettes here are where the surface ends in the picture,
+/// its depth jumps, or another patch begins.
 ///
 /// Colours are those of the photograph, with its light and shade in them.
 ///

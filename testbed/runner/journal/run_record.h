@@ -56,8 +56,10 @@ struct VariantRecord {
   std::string role;
   std::string reference;
   std::string options_json;
-  std::string status;  ///< "done", "stopped", or "failed": `error` ended it, its frames are kept
-  std::string error;   ///< of a failed variant
+  /// "done", "stopped", or "failed": `error` ended it, its frames are kept; without any it could
+  /// not run
+  std::string status;
+  std::string error;  ///< of a failed variant
   std::vector<FrameRecord> frames;
   std::map<std::string, MetricColumn> metrics;
   std::map<std::string, SummaryValue>
@@ -70,6 +72,11 @@ struct VariantRecord {
   std::vector<Event> events;
   std::vector<StoredFile> artifacts;
 };
+
+/// A method that the scene is not for.
+inline bool could_not_run(const VariantRecord& variant) {
+  return variant.status == "failed" && variant.frames.empty();
+}
 
 /// The comparison of two variants' solve times in one run.
 struct TimingRatio {
@@ -192,6 +199,14 @@ struct RunRecord {
   std::vector<StudyRecord> studies;
   std::vector<ClaimRecord> claims;
 };
+
+/// Whether a variant of any case could not run.
+inline bool lacks_a_variant(const RunRecord& record) {
+  for (const CaseRecord& one : record.cases)
+    for (const VariantRecord& variant : one.variants)
+      if (could_not_run(variant)) return true;
+  return false;
+}
 
 /// Writes run.h5 as temporary + fsync + rename. Throws Error naming the file.
 void write_run_file(const RunRecord& record, const std::filesystem::path& file);

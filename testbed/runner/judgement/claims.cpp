@@ -354,10 +354,18 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
         claim, claims.end(), [&](const ClaimSpec& other) { return other.text != claim->text; });
     std::vector<Decision> decided;
     for (; claim != end; ++claim) {
-      add_variant(claim->metric.starts_with("study:")
-                      ? std::vector{decide_study(*claim, experiment, record, studies)}
-                      : decide_in_cases(*claim, experiment, record),
-                  decided);
+      try {
+        add_variant(claim->metric.starts_with("study:")
+                        ? std::vector{decide_study(*claim, experiment, record, studies)}
+                        : decide_in_cases(*claim, experiment, record),
+                    decided);
+      } catch (const Error& error) {
+        if (!lacks_a_variant(record)) throw;
+        Decision short_of_it;
+        short_of_it.record.text = claim->text;
+        short_of_it.record.detail = error.what();
+        decided.push_back(std::move(short_of_it));
+      }
     }
     for (Decision& one : decided) decisions.push_back(std::move(one.record));
   }

@@ -269,33 +269,42 @@ std::string needed_by(const StudySpec& study) {
   return "at least 2 cases with '" + study.against + "', a fact of the scene or a swept key";
 }
 
+StudyRecord made_study(const StudySpec& study, const RunRecord& record) {
+  StudyRecord made;
+  made.name = study.name;
+  made.kind = text_of(study.kind);
+  made.quantity = study.quantity;
+  const std::vector<const CaseRecord*> cases = cases_of(study, record);
+  const std::uint64_t seed = record.cases.front().seed;
+  if (study.kind == StudyKind::pooled) {
+    add_pooled(made, study, cases);
+  } else if (study.kind == StudyKind::matched) {
+    add_matched(made, study, cases, seed);
+  } else {
+    for (const CaseRecord* in : cases) add_point(made, study, *in);
+  }
+  if (made.x.size() < 2) {
+    throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
+                "study '" + study.name + "'", needed_by(study));
+  }
+  const Interval interval = interval_of(study, made, cases, seed);
+  made.value = interval.value;
+  made.low = interval.low;
+  made.high = interval.high;
+  return made;
+}
+
 }  // namespace
 
 std::vector<StudyRecord> make_studies(const Experiment& experiment, const RunRecord& record) {
   std::vector<StudyRecord> studies;
   for (const StudySpec& study : experiment.studies) {
-    StudyRecord made;
-    made.name = study.name;
-    made.kind = text_of(study.kind);
-    made.quantity = study.quantity;
-    const std::vector<const CaseRecord*> cases = cases_of(study, record);
-    const std::uint64_t seed = record.cases.front().seed;
-    if (study.kind == StudyKind::pooled) {
-      add_pooled(made, study, cases);
-    } else if (study.kind == StudyKind::matched) {
-      add_matched(made, study, cases, seed);
-    } else {
-      for (const CaseRecord* in : cases) add_point(made, study, *in);
+    try {
+      studies.push_back(made_study(study, record));
+    } catch (const Error&) {
+      // A study of what could not run is none; claims about it fall short.
+      if (!lacks_a_variant(record)) throw;
     }
-    if (made.x.size() < 2) {
-      throw Error("only " + std::to_string(made.x.size()) + " cases have what it needs",
-                  "study '" + study.name + "'", needed_by(study));
-    }
-    const Interval interval = interval_of(study, made, cases, seed);
-    made.value = interval.value;
-    made.low = interval.low;
-    made.high = interval.high;
-    studies.push_back(std::move(made));
   }
   return studies;
 }

@@ -161,24 +161,39 @@ TEST_F(BadCharacter, MotionOfAnUnknownJointNamesTheExperiment) {
   EXPECT_FALSE(fs::exists(out()));
 }
 
-TEST_F(BadCharacter, FolderThatWasThereStaysAndEarlierResultsAreKept) {
-  const std::string scene =
-      "character = \"character.glb\"\nmotion = { kind = \"clip\", frames = 2 }";
-  const auto file = experiment(scene);
+TEST_F(BadCharacter, FolderThatWasThereStays) {
+  const auto file =
+      experiment("character = \"character.glb\"\nmotion = { kind = \"clip\", frames = 2 }");
   write(skinned_square(), 7);
   fs::copy_file(character(), file.parent_path() / "character.glb");
   fs::create_directories(out());
   EXPECT_THAT(error_of([&] { run_skinning(file); }), HasSubstr("truncated"));
   EXPECT_TRUE(fs::is_empty(out()));
+}
 
-  // Only the last variant needs a closed mesh: what the first has done is kept for --resume.
-  write(skinned_square());
-  fs::copy_file(character(), file.parent_path() / "character.glb",
-                fs::copy_options::overwrite_existing);
-  std::ofstream(file, std::ios::app) << "[[variant]]\nname = \"b\"\nmethod = \"implicit\"\n";
+// What the first variant has done is kept for --resume.
+TEST_F(BadCharacter, EarlierResultsAreKept) {
+  const auto file =
+      experiment("character = \"cylinder\"\nmotion = { joint = \"upper\", frames = 2 }");
+  std::ofstream(file, std::ios::app) << "[[variant]]\nname = \"b\"\nmethod = \"implicit\"\n"
+                                        "options = { joint_blends = [{ joint = \"knee\" }] }\n";
   EXPECT_THAT(error_of([&] { run_skinning(file); }), HasSubstr("variant 'b'"));
   EXPECT_TRUE(fs::exists(out() / "journal.jsonl"));
   EXPECT_FALSE(fs::exists(out() / "run.h5"));
+}
+
+TEST_F(BadCharacter, AnOpenMeshIsNoneForFieldsAndTheOthersRun) {
+  const auto file =
+      experiment("character = \"character.glb\"\nmotion = { kind = \"clip\", frames = 2 }");
+  write(skinned_square());
+  fs::copy_file(character(), file.parent_path() / "character.glb");
+  std::ofstream(file, std::ios::app) << "[[variant]]\nname = \"b\"\nmethod = \"implicit\"\n";
+  const ExecuteResult result = run_skinning(file);
+  const std::vector<VariantRecord>& variants = result.record.cases.at(0).variants;
+  EXPECT_EQ(variants.at(0).frames.size(), 2U);
+  EXPECT_EQ(variants.at(1).status, "failed");
+  EXPECT_THAT(variants.at(1).error,
+              AllOf(HasSubstr("character.glb"), HasSubstr("closed mesh"), HasSubstr("0-1")));
 }
 
 TEST_F(BadCharacter, FileGivenAsFolderIsNamed) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <limits>
 #include <numbers>
 
 #include "baselines/skinning/centers_of_rotation/centers_of_rotation.h"
@@ -429,6 +430,16 @@ TEST(Tracking, WalksToAFirstPoseFromRest) {
   EXPECT_LE((one - other).rowwise().norm().maxCoeff(), 1e-6 * kFingerRadius);
   begun.restart();
   EXPECT_EQ(after(begun, {110}), one);
+}
+
+TEST(Tracking, RefusesAPoseOfOtherJoints) {
+  ImplicitSkinning skin = make(finger(), tracking());
+  Eigen::MatrixX3d posed;
+  RunContext context;
+  EXPECT_THROW(skin.deform({}, posed, context), Error);
+  Pose broken = rest_pose(finger().skeleton.size());
+  broken.back().translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(skin.deform(broken, posed, context), Error);
 }
 
 TEST(Tracking, MayBeginAnywhereInSpace) {

@@ -162,7 +162,9 @@ TEST_F(Program, VariantsAndSettingsMayFollowEachOtherOrTheExperimentThem) {
       "run toy-circle/disc --no-pictures --json --variant polygon exact",
       "run toy-circle/disc --no-pictures --json --variant polygon --variant exact",
       "run --no-pictures --json --variant polygon exact toy-circle/disc",
-      "run --no-pictures --json --set scene.radius_m=1 seed=1 toy-circle/disc"};
+      "run --no-pictures --json --variant polygon toy-circle/disc --variant exact",
+      "run --no-pictures --json --set scene.radius_m=1 seed=1 toy-circle/disc",
+      "run --no-pictures --json --set scene.radius_m=1 toy-circle/disc --set seed=1"};
   for (const std::string& order : orders) {
     const Outcome outcome = run(order);
     EXPECT_EQ(outcome.code, 0) << order << "\n" << outcome.err;

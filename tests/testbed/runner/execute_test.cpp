@@ -279,6 +279,16 @@ options = { segments = 50000 }
 name = "coarse"
 method = "polygon"
 reference = "too-fine"
+[[study]]
+name = "order"
+kind = "exponent"
+variant = "too-fine"
+quantity = "radius_error"
+against = "vertices"
+[[claim]]
+text = "it converges"
+metric = "study:order"
+value = 2
 [[claim]]
 text = "finer is nearer"
 metric = "radius_error"
@@ -305,10 +315,12 @@ TEST_F(RefusedMethod, FailsAloneAndTheOtherVariantsRun) {
     EXPECT_EQ(variant_of(result.record, other).frames.size(), 4U) << other;
     EXPECT_TRUE(variant_of(result.record, other).timing.contains("solve")) << other;
   }
-  ASSERT_EQ(result.record.claims.size(), 2U);
-  EXPECT_FALSE(result.record.claims[0].holds);
-  EXPECT_THAT(result.record.claims[0].detail, HasSubstr("variant 'too-fine' cannot run"));
-  EXPECT_TRUE(result.record.claims[1].holds);
+  ASSERT_EQ(result.record.claims.size(), 3U);
+  EXPECT_FALSE(result.record.claims[0].holds) << "of a study that there is not";
+  EXPECT_FALSE(result.record.claims[1].holds);
+  EXPECT_THAT(result.record.claims[1].detail, HasSubstr("variant 'too-fine' cannot run"));
+  EXPECT_TRUE(result.record.claims[2].holds);
+  EXPECT_FALSE(fs::exists(out() / "frames/default/too-fine.pvd"));
   const VariantRecord read = variant_of(read_run_file(out() / "run.h5"), "too-fine");
   EXPECT_EQ(read.status, "failed");
   EXPECT_EQ(read.error, fine.error);
@@ -322,22 +334,34 @@ TEST_F(RefusedMethod, StaysRefusedWhenTheRunIsResumed) {
   EXPECT_EQ(variant_of(again.record, "coarse").frames.size(), 4U);
 }
 
-TEST_F(RefusedMethod, OfAllVariantsEndsTheRun) {
-  const fs::path file = write_experiment("toy-circle/alone", R"(
-title = "No method is for this disc"
-topic = "toy-circle"
-[[variant]]
-name = "too-fine"
-method = "polygon"
-options = { segments = 50000 }
-[[variant]]
-name = "finer"
-method = "polygon"
-options = { segments = 60000 }
-)");
-  EXPECT_THAT(error_of([&] { run(load(file), out()); }),
-              AllOf(HasSubstr("60000 corners"), HasSubstr("variant 'finer'")));
-  EXPECT_FALSE(fs::exists(out() / "run.h5"));
+/// Two variants, both of which have as many corners.
+std::string two_polygons(const std::string& corners) {
+  return "title = \"Two polygons\"\ntopic = \"toy-circle\"\nseed = 1\n"
+         "[[variant]]\nname = \"one\"\nmethod = \"polygon\"\noptions = { segments = " +
+         corners +
+         " }\n[[variant]]\nname = \"other\"\nmethod = \"polygon\"\noptions = { segments = " +
+         corners + " }\n";
+}
+
+TEST_F(RefusedMethod, OfAllVariantsEndsTheRunWithoutAFolder) {
+  const fs::path file = write_experiment("toy-circle/alone", two_polygons("50000"));
+  EXPECT_THAT(error_of([&] { execute(load(file), toy::topics(), {}); }),
+              AllOf(HasSubstr("50000 corners"), HasSubstr("variant 'one'")));
+  EXPECT_FALSE(find_run(load(file)).has_value());
+  EXPECT_THAT(error_of([&] { run(load(file), out()); }), HasSubstr("50000 corners"));
+  EXPECT_FALSE(fs::exists(out() / "journal.jsonl"));
+}
+
+TEST_F(RefusedMethod, OfAllVariantsOfACaseLeavesTheOtherCases) {
+  const fs::path file = write_experiment(
+      "toy-circle/cases",
+      two_polygons("50000") + "[[sweep]]\nkey = \"scene.points\"\nvalues = [60]\n");
+  const ExecuteResult result = run(load(file), out());
+  ASSERT_EQ(result.record.cases.size(), 2U);
+  for (const VariantRecord& variant : result.record.cases[0].variants)
+    EXPECT_TRUE(could_not_run(variant)) << variant.name;
+  for (const VariantRecord& variant : result.record.cases[1].variants)
+    EXPECT_EQ(variant.status, "done") << variant.name;
 }
 
 TEST_F(Execute, RefusesAFolderThatIsNotEmpty) {
