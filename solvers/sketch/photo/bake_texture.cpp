@@ -243,8 +243,8 @@ class PatternBaker {
         colour_(covered_.triangle.size(), Eigen::Vector3d::Constant(255)),
         source_(covered_.triangle.size(), TexelSource::none) {}
 
-  /// @param step, reach  of `continue_patches`; @param bleed beyond borders (pixels)
-  BakedPattern bake(int step, double reach, int bleed);
+  /// @param step, reach  of `continue_patches`; @param beyond  borders colours go on (pixels)
+  BakedPattern bake(int step, double reach, int beyond);
 
  private:
   [[nodiscard]] int patch_at(std::size_t texel) const {
@@ -254,7 +254,7 @@ class PatternBaker {
   void colour_texel(std::size_t texel);
   void continue_patches(int step, double reach);
   void fill_hidden();
-  void bleed_once();
+  void bleed(int step, int pixels);
 
   const SeenSurface& seen_;
   const OneViewResult& result_;
@@ -349,31 +349,44 @@ void PatternBaker::fill_hidden() {
   }
 }
 
-/// Pixels beside coloured ones get their mean.
-void PatternBaker::bleed_once() {
-  std::vector<TexelSource> grown = source_;
-  for (int y = 0; y < grid_.height; ++y) {
-    for (int x = 0; x < grid_.width; ++x) {
-      const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * grid_.width + i; };
-      if (source_[at(x, y)] != TexelSource::none) continue;
-      Eigen::Vector3d sum(0, 0, 0);
-      int count = 0;
+/// Beyond the borders of pieces the colours of their patches go on, too.
+/// @param pixels  beyond
+void PatternBaker::bleed(int step, int pixels) {
+  std::vector<int> owner(source_.size(), -1);  // patch of a pixel, beyond that of its neighbour
+  ContinuedPatches patches(grid_.width, grid_.height, step,
+                           static_cast<int>(result_.patches.size()));
+  std::vector<std::size_t> front, beyond;
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] == TexelSource::none) continue;
+    owner[i] = patch_at(i);
+    patches.know(i, owner[i], colour_[i]);
+    front.push_back(i);
+  }
+  for (int k = 0; k < pixels; ++k) {
+    std::vector<std::size_t> next;
+    for (const std::size_t pixel : front) {
+      const int x = static_cast<int>(pixel % grid_.width);
+      const int y = static_cast<int>(pixel / grid_.width);
       for (int j = std::max(y - 1, 0); j <= std::min(y + 1, grid_.height - 1); ++j) {
         for (int i = std::max(x - 1, 0); i <= std::min(x + 1, grid_.width - 1); ++i) {
-          if (source_[at(i, j)] == TexelSource::none) continue;
-          sum += colour_[at(i, j)];
-          ++count;
+          const std::size_t other = static_cast<std::size_t>(j) * grid_.width + i;
+          if (owner[other] >= 0) continue;
+          owner[other] = owner[pixel];
+          colour_[other] = colour_[pixel];
+          next.push_back(other);
         }
       }
-      if (count == 0) continue;
-      colour_[at(x, y)] = sum / count;
-      grown[at(x, y)] = TexelSource::flat;
     }
+    beyond.insert(beyond.end(), next.begin(), next.end());
+    front = std::move(next);
   }
-  source_ = std::move(grown);
+  for (const std::size_t pixel : beyond) patches.want(pixel, owner[pixel]);
+  patches.fill(2.0 * (pixels + step) / step);
+  for (const std::size_t pixel : beyond)
+    if (const auto colour = patches.colour(pixel, owner[pixel])) colour_[pixel] = *colour;
 }
 
-BakedPattern PatternBaker::bake(int step, double reach, int bleed) {
+BakedPattern PatternBaker::bake(int step, double reach, int beyond) {
   for (std::size_t i = 0; i < source_.size(); ++i)
     if (covered_.covered(i)) colour_texel(i);
   continue_patches(step, reach);
@@ -390,7 +403,7 @@ BakedPattern PatternBaker::bake(int step, double reach, int bleed) {
   for (double* share : {&baked.seen, &baked.mirrored, &baked.continued, &baked.flat})
     *share /= std::max(all, 1.0);
   fill_hidden();
-  for (int k = 0; k < bleed; ++k) bleed_once();
+  bleed(step, beyond);
   baked.image = {grid_.width, grid_.height, {}};
   for (const Eigen::Vector3d& c : colour_) baked.image.pixels.push_back(rounded_colour(c));
   return baked;
