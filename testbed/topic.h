@@ -85,6 +85,7 @@ struct MethodEntry {
   std::string source;   ///< paper or thesis section
   std::function<std::unique_ptr<OptionSet>()> default_options;
   /// `prepare`: builds the method for a scene. Timed by the runner as phase "prepare".
+  /// @throws NotApplicable  where the method is not for the scene: its variant fails alone
   std::function<Instance(const Scene&, const OptionSet&, RunContext&)> make;
   std::string ungated = {};  ///< why its results do not repeat: `check` does not compare them
   /// What its user should know of these options on this scene: printed and recorded with what was

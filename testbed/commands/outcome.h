@@ -37,7 +37,8 @@ void say_summary(const RunRecord& record, std::size_t most_cases = 4);
 /// True when no claim falls short where it must hold.
 bool all_claims_hold(const RunRecord& record);
 
-/// "variant 'x', case 'y': failed after 12 frames: why", for every variant that an error ended.
+/// "variant 'x', case 'y': failed after 12 frames: why", or "…: cannot run: why", for every variant
+/// that an error ended.
 std::vector<std::string> failures(const RunRecord& record);
 
 /// Identity, claims, studies and summary values of a run; NaN and infinities are null.

@@ -307,6 +307,7 @@ void PatternBaker::colour_texel(std::size_t texel) {
 /// are as straight as they were woven; out of reach they are what a hidden place has.
 /// @param step, reach  of `ContinuedPatches`
 void PatternBaker::continue_patches(int step, double reach) {
+  if (if_out_of_reach_.empty()) return;
   ContinuedPatches patches(grid_.width, grid_.height, step,
                            static_cast<int>(result_.patches.size()));
   for (std::size_t i = 0; i < source_.size(); ++i) {
@@ -352,6 +353,7 @@ void PatternBaker::fill_hidden() {
 /// Beyond the borders of pieces the colours of their patches go on, too.
 /// @param pixels  beyond
 void PatternBaker::bleed(int step, int pixels) {
+  if (pixels == 0) return;
   std::vector<int> owner(source_.size(), -1);  // patch of a pixel, beyond that of its neighbour
   ContinuedPatches patches(grid_.width, grid_.height, step,
                            static_cast<int>(result_.patches.size()));

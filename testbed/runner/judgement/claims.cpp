@@ -342,6 +342,23 @@ Decision decide_study(const ClaimSpec& claim, const Experiment& experiment, cons
   return decision;
 }
 
+/// A claim of one variant, in every case. Where a variant could not run it may be undecidable: it
+/// falls short then, and the others are decided.
+std::vector<Decision> decide_one(const ClaimSpec& claim, const Experiment& experiment,
+                                 const RunRecord& record, const std::vector<StudyRecord>& studies) {
+  try {
+    if (claim.metric.starts_with("study:"))
+      return {decide_study(claim, experiment, record, studies)};
+    return decide_in_cases(claim, experiment, record);
+  } catch (const Error& error) {
+    if (!lacks_a_variant(record)) throw;
+    Decision undecided;
+    undecided.record.text = claim.text;
+    undecided.record.detail = error.what();
+    return {undecided};
+  }
+}
+
 }  // namespace
 
 std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRecord& record) {
@@ -353,20 +370,8 @@ std::vector<ClaimRecord> decide_claims(const Experiment& experiment, const RunRe
     const auto end = std::find_if(
         claim, claims.end(), [&](const ClaimSpec& other) { return other.text != claim->text; });
     std::vector<Decision> decided;
-    for (; claim != end; ++claim) {
-      try {
-        add_variant(claim->metric.starts_with("study:")
-                        ? std::vector{decide_study(*claim, experiment, record, studies)}
-                        : decide_in_cases(*claim, experiment, record),
-                    decided);
-      } catch (const Error& error) {
-        if (!lacks_a_variant(record)) throw;
-        Decision short_of_it;
-        short_of_it.record.text = claim->text;
-        short_of_it.record.detail = error.what();
-        decided.push_back(std::move(short_of_it));
-      }
-    }
+    for (; claim != end; ++claim)
+      add_variant(decide_one(*claim, experiment, record, studies), decided);
     for (Decision& one : decided) decisions.push_back(std::move(one.record));
   }
   return decisions;

@@ -118,8 +118,7 @@ FigureCell make_cell(const CaseRecord& c, const std::string& variant_name,
   cell.label = display_name(variant_name);
   const VariantRecord* variant = find_variant(c, variant_name);
   const FrameRecord* frame = variant != nullptr ? nearest_frame(*variant, parameter) : nullptr;
-  if (variant != nullptr && variant->status == "failed" && variant->frames.empty())
-    cell.note = "cannot run";
+  if (variant != nullptr && could_not_run(*variant)) cell.note = "cannot run";
   if (frame == nullptr) return cell;
   if (failed_before(*variant, state)) {
     cell.note = "failed after " + with_unit(variant->frames.back().parameter, c.parameter_unit);
