@@ -10,13 +10,15 @@
 #include "core/geometry/topology.h"
 #include "core/limits.h"
 #include "core/parallel.h"
-#include "solvers/skinning/base_skin.h"
+#include "solvers/skinning/base/base_skin.h"
+#include "solvers/skinning/base/spread_weights.h"
 #include "solvers/skinning/field/composition.h"
 #include "solvers/skinning/projection/contact_smoothing.h"
 #include "solvers/skinning/projection/pose_path.h"
 #include "solvers/skinning/projection/projection.h"
 #include "solvers/skinning/projection/relaxation.h"
 #include "solvers/skinning/projection/skin_state.h"
+#include "solvers/skinning/smooth/limbs.h"
 #include "solvers/skinning/smooth/projection.h"
 
 namespace geoprior::skinning {
@@ -27,6 +29,9 @@ constexpr int kReleasedFitSteps = 2;
 constexpr int kReleasedRelaxations = 7;
 
 constexpr std::size_t kVerticesPerTask = 4096;
+
+/// Where dual quaternions are the base: of any bone longer than thick. Bones of the trunk are not.
+constexpr LimbRatios kLimbsOfBase{0.7F, 1.1F};
 
 std::vector<JointOperator> joint_operators(const BonePartition& partition, const Skeleton& skeleton,
                                            const ImplicitOptions& options) {
@@ -77,6 +82,35 @@ std::vector<BoneField> fit_fields(const RiggedMesh& rig, const BonePartition& pa
   return fields;
 }
 
+/// Skin that blends over a part of its limb, unless each vertex is to march from where its weights
+/// bring it.
+RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition,
+                      const ImplicitOptions& options) {
+  RiggedMesh spread = rig;
+  if (options.projection == ProjectionKind::marching || !(options.smooth.spread > 0)) return spread;
+  Eigen::VectorXd radius = local_radii(rig, partition);
+  const double owned = static_cast<double>((radius.array() > 0).count());
+  if (!(owned > 0)) return spread;
+  const double mean = radius.sum() / owned;
+  radius = (radius.array() > 0).select(radius, mean);
+  spread.weights = spread_weights(rig, radius, options.smooth.spread);
+  return spread;
+}
+
+BaseKind base_of(const ImplicitOptions& options) {
+  const bool marches = options.projection == ProjectionKind::marching;
+  return options.base.value_or(marches ? BaseKind::dual_quaternion : BaseKind::limbs_and_trunk);
+}
+
+Eigen::VectorXd vertex_limb_shares(const RiggedMesh& rig, const BonePartition& partition,
+                                   const SkinState& state) {
+  const std::vector<float> of_slot = limb_shares(rig, partition, state, kLimbsOfBase);
+  Eigen::VectorXd share(rig.mesh.vertex_count());
+  for (std::size_t s = 0; s < state.size(); ++s)
+    share(state.vertex[s]) = static_cast<double>(of_slot[s]);
+  return share;
+}
+
 Float4 row_of(const Eigen::MatrixX3d& V, int v) {
   return Float4{static_cast<float>(V(v, 0)), static_cast<float>(V(v, 1)),
                 static_cast<float>(V(v, 2)), 0.0F};
@@ -87,7 +121,6 @@ Float4 row_of(const Eigen::MatrixX3d& V, int v) {
 struct ImplicitSkinning::Impl {
   Impl(const RiggedMesh& rig, const ImplicitOptions& chosen, const RunContext& context)
       : options(chosen),
-        base(rig, chosen.base),
         joint_count(rig.skeleton.size()),
         graph(one_rings(rig.mesh.F, rig.mesh.vertex_count())),
         partition(partition_bones(rig, options.partition, options.radius_scale)),
@@ -95,7 +128,9 @@ struct ImplicitSkinning::Impl {
               joint_operators(partition, rig.skeleton, options), options.support,
               partition.bone_of_vertex, graph, options.limb_contact),
         projection(field, options),
-        state(rig, graph, partition.bone_of_vertex) {
+        skin(spread_rig(rig, partition, options)),
+        state(skin, graph, partition.bone_of_vertex),
+        base(skin, base_of(options), vertex_limb_shares(skin, partition, state)) {
     if (partition.bones.empty()) {
       throw NotApplicable("no joint moves enough vertices for a field", "implicit skinning",
                           "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
@@ -108,7 +143,7 @@ struct ImplicitSkinning::Impl {
     field.set_pose(rest_pose(joint_count));
     projection.record_rest(state);
     if (options.projection != ProjectionKind::marching) {
-      smooth_projection.emplace(rig, partition, field, options, state);
+      smooth_projection.emplace(skin, partition, field, options, state);
       smooth_projection->record_rest(state);
     }
     if (options.projection == ProjectionKind::tracking) {
@@ -121,19 +156,20 @@ struct ImplicitSkinning::Impl {
   void follow(const Pose& pose, Eigen::MatrixX3d& posed);
   void start(const Pose& pose, Eigen::MatrixX3d& posed);
   void turn_normals();
-  void correct();
+  void correct(const Pose& pose);
   void fit(RunContext& context);
   void smooth(int diffusion, int passes);
   void finish(Eigen::MatrixX3d& posed);
 
   ImplicitOptions options;
-  BaseSkin base;
   int joint_count;
   VertexGraph graph;
   BonePartition partition;
   FieldComposition field;
   Projection projection;
+  RiggedMesh skin;  ///< with the weights that move it
   SkinState state;
+  BaseSkin base;
   std::optional<SmoothProjection> smooth_projection;
   std::optional<PosePath> path;    // of poses that are tracked
   std::vector<Float4> quaternion;  // of the joints
@@ -161,7 +197,7 @@ void ImplicitSkinning::Impl::follow(const Pose& pose, Eigen::MatrixX3d& posed) {
   const int steps = path->go_to(pose, largest_turn);
   for (int step = 1; step < steps; ++step) {
     start(path->at(step), posed);
-    correct();
+    correct(path->at(step));
   }
 }
 
@@ -186,13 +222,13 @@ void ImplicitSkinning::Impl::turn_normals() {
   });
 }
 
-void ImplicitSkinning::Impl::correct() {
+void ImplicitSkinning::Impl::correct(const Pose& pose) {
   quaternion.clear();
   for (const Eigen::Matrix3d& turn : field.rotations()) {
     const Eigen::Vector4f q = Eigen::Quaterniond(turn).coeffs().cast<float>();
     quaternion.push_back(Float4{q(0), q(1), q(2), q(3)});
   }
-  iterations = smooth_projection->solve(state, quaternion);
+  iterations = smooth_projection->solve(state, pose, quaternion);
 }
 
 void ImplicitSkinning::Impl::fit(RunContext& context) {
@@ -251,7 +287,7 @@ void ImplicitSkinning::deform(const Pose& pose, Eigen::MatrixX3d& posed, RunCont
   }
   if (impl.smooth_projection) {
     const Phase phase(context, "projection");
-    impl.correct();
+    impl.correct(pose);
     impl.finish(posed);
     return;
   }

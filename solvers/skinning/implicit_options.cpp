@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
 constexpr std::array<std::string_view, 3> kProjectionNames{"smooth", "tracking", "marching"};
-constexpr std::array<std::string_view, 3> kBaseNames{"dual-quaternion", "centers-of-rotation",
+constexpr std::array<std::string_view, 4> kBaseNames{"limbs-and-trunk", "dual-quaternion", "centers-of-rotation",
                                                      "direct-delta-mush"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
 
@@ -51,7 +51,9 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
 }
 
 void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
-  describe_choice(v, "base", o.base, kBaseNames, {.doc = "the skin that is corrected"});
+  describe_choice(v, "base", o.base, kBaseNames, {.doc = "the skin that is corrected: dual quaternions on limbs and centers of "
+                          "rotation on the trunk, or one method everywhere; absent: the first, "
+                          "dual quaternions for the marching"});
   describe_choice(
       v, "projection", o.projection, kProjectionNames,
       {.doc = "one smooth correction, the same with contact that is tracked from pose to pose, or "
@@ -91,6 +93,13 @@ void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
 
 /// What holds sections and contacts alike, and how both are solved for.
 void describe_correction(OptionVisitor& v, SmoothOptions& o) {
+  v.value("spread", o.spread,
+          {.doc = "width over which the weights are spread before they move the skin, in local "
+                  "radii; 0: as they are",
+           .min = 0,
+           .max = 5});
+  v.value("volume", o.volume,
+          {.doc = "swells the skin about each joint by the volume that it has lost there"});
   v.value("section", o.section,
           {.doc = "share of what the fields of limbs ask for that is followed; 0: contact alone",
            .min = 0,

@@ -59,12 +59,14 @@ void describe(OptionVisitor& v, SamplingOptions& options);
 /// along its own gradient, as published (projection.h).
 enum class ProjectionKind { smooth, tracking, marching };
 
-/// What is corrected (base_skin.h).
-enum class BaseKind { dual_quaternion, centers_of_rotation, direct_delta_mush };
+/// What is corrected (base/base_skin.h).
+enum class BaseKind { limbs_and_trunk, dual_quaternion, centers_of_rotation, direct_delta_mush };
 
 /// The smooth correction. Lengths are shares of the local radius: the distance of the skin from its
 /// bone.
 struct SmoothOptions {
+  double spread = 0.6;
+  bool volume = true;
   double section = 0.5;
   double cutoff = 2.2;
   double contact_cutoff = 1.2;
@@ -96,8 +98,8 @@ struct ImplicitOptions {
   double radius_scale = 1;
   int grid = 32;
 
-  BaseKind base = BaseKind::dual_quaternion;
-  ProjectionKind projection = ProjectionKind::marching;
+  std::optional<BaseKind> base;
+  ProjectionKind projection = ProjectionKind::smooth;
   SmoothOptions smooth;
 
   Schedule schedule = Schedule::paper;

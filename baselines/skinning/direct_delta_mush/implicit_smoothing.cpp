@@ -47,10 +47,14 @@ struct RowOfTwelve {
 }  // namespace
 
 ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, double length, int steps)
+    : ImplicitSmoothing(mesh, positive_cotangent_laplacian(mesh).diagonal(), length, steps) {}
+
+ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, const Eigen::VectorXd& mass, double length,
+                                     int steps)
     : steps_(steps) {
   using Sparse = Eigen::SparseMatrix<double>;
   Sparse laplacian = positive_cotangent_laplacian(mesh);
-  Eigen::VectorXd diagonal = laplacian.diagonal();
+  Eigen::VectorXd diagonal = mass;
   diagonal = (diagonal.array() > 0).select(diagonal, 1.0);
   Sparse system = length * laplacian;
   for (int v = 0; v < mesh.vertex_count(); ++v) system.coeffRef(v, v) += diagonal(v);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace geoprior::skinning {
@@ -16,10 +18,25 @@ inline float dot3(Float4 a, Float4 b) {
   return product[0] + product[1] + product[2];
 }
 
+/// Length of the first three components.
+inline float length3(Float4 a) { return std::sqrt(dot3(a, a)); }
+
 /// Cross product of the first three components; the fourth is zero.
 inline Float4 cross3(Float4 a, Float4 b) {
   return Float4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
                 0.0F};
+}
+
+/// v turned by the unit quaternion q (x, y, z, w).
+inline Float4 turned(Float4 q, Float4 v) {
+  const Float4 t = splat(2) * cross3(q, v);
+  return v + splat(q[3]) * t + cross3(q, t);
+}
+
+/// 0 up to `low`, 1 from `high` on, smooth between.
+inline float smooth_ramp(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0F, 1.0F);
+  return t * t * (3 - 2 * t);
 }
 
 /// Box around points.

@@ -25,8 +25,7 @@ constexpr float kLargestDemand = 0.5F;
 
 /// Length of a bone over the thickness of its skin: up to the first its field says nothing of the
 /// section (a part of the trunk), from the second on it says all (a limb).
-constexpr float kTrunkRatio = 1.0F;
-constexpr float kLimbRatio = 1.4F;
+constexpr LimbRatios kKnownSections{1.0F, 1.4F};
 
 /// Cosine of gradient and skinned normal: a field is not believed up to the first (beyond a medial
 /// axis they part), entirely from the second on.
@@ -41,79 +40,19 @@ constexpr float kFacing = 0.0F;
 /// How far below contact another bone's field begins to silence the own one, in local radii.
 constexpr float kCrowd = 0.5F;
 
-/// Means over one rings that smooth radii and trust: rings at a joint belong to one bone or the
-/// other, and their values jump there.
+/// Means over one rings that smooth radii: rings at a joint belong to one bone or the other.
 constexpr int kPreparationPasses = 5;
 
 constexpr std::size_t kBlocksOfTask = 4;
 constexpr std::size_t kSlotsOfTask = 512;
 
-/// Least local radius, over the largest distance of the bone's skin.
-constexpr double kLeastRadius = 0.3;
-
-float ramp(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0F, 1.0F);
-  return t * t * (3 - 2 * t);
-}
-
-float length_of(Float4 v) { return std::sqrt(dot3(v, v)); }
-
-/// 1 for a limb, longer than thick, 0 for a part of the trunk.
-std::vector<double> limb_likeness(const BonePartition& partition) {
-  std::vector<double> likeness;
-  for (const FieldBone& bone : partition.bones) {
-    const double ratio = (bone.tail - bone.head).norm() / (2 * bone.radius);
-    likeness.push_back(
-        static_cast<double>(ramp(kTrunkRatio, kLimbRatio, static_cast<float>(ratio))));
-  }
-  return likeness;
-}
-
-/// Means over one rings, `kPreparationPasses` times.
-void smooth_values(std::vector<float>& values, const SkinState& state) {
-  std::vector<float> next(values.size());
-  for (int i = 0; i < kPreparationPasses; ++i) {
-    for (std::size_t s = 0; s < values.size(); ++s) {
-      float sum = values[s];
-      for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j)
-        sum += values[state.ring[j]];
-      next[s] = sum / static_cast<float>(1 + state.ring_offset[s + 1] - state.ring_offset[s]);
-    }
-    values.swap(next);
-  }
-}
-
-/// What the fields of limbs know about the skin near the two ends of each bone: a joint is known as
-/// well as the less limb-like of its bones.
-struct EndTrust {
-  std::vector<double> head, tail;
-};
-
-EndTrust end_trust(const BonePartition& partition, const std::vector<double>& limb) {
-  EndTrust trust{limb, limb};
-  for (std::size_t b = 0; b < limb.size(); ++b) {
-    const int parent = partition.bones[b].parent;
-    if (parent < 0) continue;
-    const std::size_t p = parent;
-    trust.head[b] = std::min(limb[b], limb[p]);
-    trust.tail[p] = std::min(trust.tail[p], trust.head[b]);
-  }
-  return trust;
-}
-
-std::vector<float> local_radii(const RiggedMesh& rig, const BonePartition& partition,
-                               const SkinState& state) {
+/// Local radii of the slots.
+std::vector<float> slot_radii(const RiggedMesh& rig, const BonePartition& partition,
+                              const SkinState& state) {
+  const Eigen::VectorXd of_vertex = local_radii(rig, partition);
   std::vector<float> radius;
-  for (std::size_t s = 0; s < state.size(); ++s) {
-    double r = 0;
-    if (state.owner[s] >= 0) {
-      const FieldBone& bone = partition.bones[state.owner[s]];
-      r = std::max(kLeastRadius * bone.radius,
-                   segment_distance(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail));
-    }
-    radius.push_back(static_cast<float>(r));
-  }
-  smooth_values(radius, state);
+  for (const int v : state.vertex) radius.push_back(static_cast<float>(of_vertex(v)));
+  smooth_values(radius, state, kPreparationPasses);
   return radius;
 }
 
@@ -167,12 +106,6 @@ std::vector<int> joints_about(const SkinState& state, const FieldComposition& fi
   return joints;
 }
 
-/// v turned by a unit quaternion.
-Float4 turned(Float4 q, Float4 v) {
-  const Float4 t = splat(2) * cross3(q, v);
-  return v + splat(q[3]) * t + cross3(q, t);
-}
-
 }  // namespace
 
 SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& partition,
@@ -181,27 +114,15 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
     : field_(field),
       options_(options.smooth),
       gap_(static_cast<float>(options.smooth.contact_gap)),
-      radius_(local_radii(rig, partition, state)),
+      radius_(slot_radii(rig, partition, state)),
+      trust_(limb_shares(rig, partition, state, kKnownSections)),
       system_(rig.mesh, state, radius_),
+      volumes_(rig, partition, state, radius_),
       rotation_(state.size()),
       demand_(state.size()),
       moved_(state.size()),
       seen_(state.size()),
-      kept_(state.size()) {
-  const EndTrust trust = end_trust(partition, limb_likeness(partition));
-  for (std::size_t s = 0; s < state.size(); ++s) {
-    if (state.owner[s] < 0) {
-      trust_.push_back(0);
-      continue;
-    }
-    const std::size_t b = state.owner[s];
-    const FieldBone& bone = partition.bones[b];
-    const double along = segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
-    const double share = ramp(0.3F, 0.7F, static_cast<float>(along));
-    trust_.push_back(static_cast<float>(trust.head[b] + share * (trust.tail[b] - trust.head[b])));
-  }
-  smooth_values(trust_, state);
-}
+      kept_(state.size()) {}
 
 void SmoothProjection::blend_rotations(const SkinState& state,
                                        const std::vector<Float4>& rotations) {
@@ -250,9 +171,9 @@ float SmoothProjection::slack_of(std::size_t slot, int bone) const {
 }
 
 float SmoothProjection::facing_of(const BoneSample& other, Float4 outward) const {
-  const float lengths = length_of(other.inward) * length_of(outward);
+  const float lengths = length3(other.inward) * length3(outward);
   if (!(lengths > 0)) return 0;
-  return ramp(kTurnedAway, kFacing, dot3(other.inward, outward) / lengths);
+  return smooth_ramp(kTurnedAway, kFacing, dot3(other.inward, outward) / lengths);
 }
 
 float SmoothProjection::crowding(const SkinState& state, std::size_t slot,
@@ -264,7 +185,7 @@ float SmoothProjection::crowding(const SkinState& state, std::size_t slot,
     if (other.bone == state.owner[slot]) continue;
     const float facing = facing_of(other, outward);
     const float excess = excess_of(slot, at, other);
-    crowd = std::max(crowd, facing * ramp(-margin, 0, excess));
+    crowd = std::max(crowd, facing * smooth_ramp(-margin, 0, excess));
   }
   return crowd;
 }
@@ -283,9 +204,9 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
     const float towards = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
     const Float4 way = at.own.depth > 0 ? at.own.inward - other.inward : -other.inward;
-    const float slope = length_of(way);
+    const float slope = length3(way);
     if (towards <= 0 || !(slope > 0.05F)) continue;
-    const float depth = excess / std::max(slope, length_of(other.inward));
+    const float depth = excess / std::max(slope, length3(other.inward));
     if (depth <= deepest) continue;
     deepest = depth;
     facing = towards;
@@ -316,12 +237,12 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   for (const BoneSample& sample : at.all())
     if (field_.same_part(owner, sample.bone)) own_part[own_count++] = sample;
   const FieldComposition::Composed all = field_.compose({own_part.data(), own_count});
-  const float slope = length_of(all.gradient);
-  const float outward_length = length_of(outward);
+  const float slope = length3(all.gradient);
+  const float outward_length = length3(outward);
   if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
   const float agree =
-      ramp(kDisagrees, kAgrees, -dot3(all.gradient, outward) / (slope * outward_length));
-  const float known = ramp(0.02F, 0.15F, all.value) * (1 - ramp(0.85F, 0.98F, all.value));
+      smooth_ramp(kDisagrees, kAgrees, -dot3(all.gradient, outward) / (slope * outward_length));
+  const float known = smooth_ramp(0.02F, 0.15F, all.value) * (1 - smooth_ramp(0.85F, 0.98F, all.value));
   const float free = 1 - crowding(state, slot, at);
   const Float4 n = all.gradient / splat(slope);
   const float before = dot3(n, moved_[slot]);
@@ -382,7 +303,7 @@ bool SmoothProjection::is_free(std::size_t slot) const {
   const float band = static_cast<float>(options_.contact_band) * radius_[slot];
   const float excess = seen_[slot].excess + band;
   return seen_[slot].excess < 0 &&
-         excess + kSteepest * length_of(moved_[slot] - seen_[slot].moved) < 0;
+         excess + kSteepest * length3(moved_[slot] - seen_[slot].moved) < 0;
 }
 
 void SmoothProjection::ask(SkinState& state, Stage stage) {
@@ -466,7 +387,7 @@ void SmoothProjection::keep() {
     const std::size_t end = std::min(kept_.size(), begin + SkinState::kBlock);
     bool displaced = false;
     for (std::size_t s = begin; s < end; ++s)
-      displaced = displaced || length_of(moved_[s]) > kKept * radius_[s];
+      displaced = displaced || length3(moved_[s]) > kKept * radius_[s];
     if (!displaced) continue;
     kept_blocks_.push_back(block);
     for (std::size_t s = begin; s < end; ++s)
@@ -484,10 +405,11 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
   }
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
+    if (options_.volume) volumes_.restore(base_, state.position);
     proximity_.build(state.position);
     ask(state, Stage::contact);
     system_.open(demand_, options);
-    if (system_.open_blocks().empty()) break;
+    if (system_.open_blocks().empty() && !options_.volume) break;
     steps += system_.solve(demand_, options, moved_);
     place(state);
     for (std::size_t s = 0; s < state.size(); ++s)
@@ -497,12 +419,15 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
   return steps;
 }
 
-int SmoothProjection::solve(SkinState& state, const std::vector<Float4>& rotations) {
+int SmoothProjection::solve(SkinState& state, const Pose& pose,
+                            const std::vector<Float4>& rotations) {
   blend_rotations(state, rotations);
+  volumes_.set_pose(field_, pose, rotation_);
   std::fill(state.stop.begin(), state.stop.end(), VertexStop::converged);
   base_ = state.start;
   system_.close(moved_);
   find_awake(state);
+  if (options_.volume) volumes_.restore(base_, state.position);
   int steps = correct_sections(state);
   base_ = state.position;
   steps += resolve_contacts(state);

@@ -10,6 +10,8 @@
 #include "solvers/skinning/implicit_options.h"
 #include "solvers/skinning/projection/skin_proximity.h"
 #include "solvers/skinning/projection/skin_state.h"
+#include "solvers/skinning/smooth/joint_volumes.h"
+#include "solvers/skinning/smooth/limbs.h"
 #include "solvers/skinning/smooth/system.h"
 
 namespace geoprior::skinning {
@@ -46,7 +48,7 @@ class SmoothProjection {
   /// Moves `state.position` from `state.start`; marks vertices in contact.
   /// @param rotations  of the joints, unit quaternions (x, y, z, w)
   /// @return steps of the linear solver
-  int solve(SkinState& state, const std::vector<Float4>& rotations);
+  int solve(SkinState& state, const Pose& pose, const std::vector<Float4>& rotations);
 
  private:
   enum class Stage { section, contact };
@@ -110,6 +112,7 @@ class SmoothProjection {
   std::vector<float> radius_;  // local, per slot
   std::vector<float> trust_;   // what a limb's field knows about the slot's skin
   SmoothSystem system_;
+  JointVolumes volumes_;
   SkinProximity proximity_;
   std::vector<std::vector<int>> joints_;  // per block, whose motion decides what fields ask
   std::vector<std::uint8_t> is_awake_;    // per block

@@ -1,0 +1,204 @@
+#include "solvers/skinning/smooth/joint_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "models/skinning/surface_diffusion.h"
+#include "solvers/skinning/smooth/limbs.h"
+
+namespace geoprior::skinning {
+namespace {
+
+/// Reach of a joint's swelling, in the mean local radius of its flesh.
+constexpr double kSwellingReach = 3;
+
+/// Largest swelling in that radius.
+constexpr double kLargestSwelling = 0.6;
+
+/// Means over one rings that smooth shares where skin of two bones meets.
+constexpr int kSharePasses = 8;
+constexpr int kNormalPasses = 20;
+
+/// Skin of the inner side of a joint swells less, by exp(-(kInside x)^2), x the cosine of its normal
+/// and the inside, times the sine of half the turn: it has nowhere to go.
+constexpr float kInside = 1;
+
+constexpr float kRigid = 1e-4F;
+constexpr float kLeastWeight = 1e-6F;
+
+constexpr std::size_t kTrianglesOfTask = 2048;
+
+/// Whether each joint is `joint` or hangs on it.
+std::vector<bool> subtree(const Skeleton& skeleton, int joint) {
+  std::vector<bool> below(skeleton.joints.size(), false);
+  for (int j = 0; j < skeleton.size(); ++j) {
+    const int parent = skeleton.joints[j].parent;
+    below[j] = j == joint || (parent >= 0 && below[parent]);
+  }
+  return below;
+}
+
+/// Of each slot, the weight of the joints that hang on `joint`, itself included.
+std::vector<float> weights_below(const Skeleton& skeleton, int joint, const SkinState& state) {
+  const std::vector<bool> below = subtree(skeleton, joint);
+  std::vector<float> weight(state.size(), 0.0F);
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    for (int i = state.influence_offset[s]; i < state.influence_offset[s + 1]; ++i)
+      if (below[state.influence_joint[i]]) weight[s] += state.influence_weight[i];
+  }
+  return weight;
+}
+
+std::vector<float> smoothed(std::vector<float> values, const SkinState& state) {
+  smooth_values(values, state, kSharePasses);
+  return values;
+}
+
+Float4 as_float4(const Eigen::Vector3d& x) {
+  return Float4{static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z()),
+                0.0F};
+}
+
+/// Normals at rest without the detail of the skin.
+std::vector<Float4> smooth_normals(const SkinState& state) {
+  std::vector<Float4> normal = state.rest_normal, next(normal.size());
+  for (int pass = 0; pass < kNormalPasses; ++pass) {
+    for (std::size_t s = 0; s < normal.size(); ++s) {
+      Float4 sum = normal[s];
+      for (int j = state.ring_offset[s]; j < state.ring_offset[s + 1]; ++j)
+        sum += normal[state.ring[j]];
+      const float length = length3(sum);
+      next[s] = length > 0 ? sum / splat(length) : normal[s];
+    }
+    normal.swap(next);
+  }
+  return normal;
+}
+
+}  // namespace
+
+JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition,
+                           const SkinState& state, const std::vector<float>& radius)
+    : moved_(rig.mesh.F.rows()) {
+  const Eigen::VectorXd area = vertex_areas(rig.mesh);
+  const std::vector<Float4> outward = smooth_normals(state);
+  std::vector<int> slot_of_vertex(rig.mesh.vertex_count(), 0);
+  for (std::size_t s = 0; s < state.size(); ++s)
+    slot_of_vertex[state.vertex[s]] = static_cast<int>(s);
+  for (const FieldBone& bone : partition.bones) {
+    if (bone.parent < 0) continue;
+    JointFlesh flesh;
+    flesh.joint = bone.joint;
+    flesh.parent = partition.bones[bone.parent].joint;
+    flesh.head = bone.head;
+    flesh.along = (bone.tail - bone.head).normalized();
+    flesh.place = as_float4(flesh.head);
+    const std::vector<float> below =
+        smoothed(weights_below(rig.skeleton, flesh.joint, state), state);
+    std::vector<float> mobility(state.size(), 0.0F);
+    double weight = 0, mean = 0;
+    for (std::size_t s = 0; s < state.size(); ++s) {
+      const float w = std::clamp(below[s], 0.0F, 1.0F);
+      if (w > kLeastWeight && w < 1 - kLeastWeight) mobility[s] = w * (1 - w);
+      const double m = static_cast<double>(mobility[s]) * area(state.vertex[s]);
+      weight += m;
+      mean += m * static_cast<double>(radius[s]);
+      const int owner = state.owner[s];
+      if (owner >= 0 && (partition.bones[owner].joint == flesh.joint || partition.bones[owner].joint == flesh.parent)) mobility[s] += kRigid;
+    }
+    if (!(weight > 0)) continue;
+    const double r = mean / weight;
+    flesh.largest = kLargestSwelling * r;
+    for (int f = 0; f < static_cast<int>(rig.mesh.F.rows()); ++f) {
+      Triangle triangle{};
+      triangle.face = f;
+      for (int k = 0; k < 3; ++k) {
+        triangle.slot[k] = slot_of_vertex[rig.mesh.F(f, k)];
+        triangle.mobility += mobility[triangle.slot[k]] / 3;
+      }
+      if (!(triangle.mobility > 0)) continue;
+      triangle.rest = cone(triangle, state.rest, flesh.place);
+      flesh.triangles.push_back(triangle);
+    }
+    std::vector<float> bump(state.size(), 0.0F);
+    for (std::size_t s = 0; s < state.size(); ++s) {
+      if (!(mobility[s] > 0)) continue;
+      const Eigen::Vector3d p = rig.mesh.V.row(state.vertex[s]);
+      const double x = (p - flesh.head).norm() / (kSwellingReach * r);
+      if (x < 1) bump[s] = static_cast<float>((1 - x * x) * (1 - x * x));
+    }
+    bump = smoothed(std::move(bump), state);
+    for (std::size_t s = 0; s < state.size(); ++s) {
+      if (bump[s] > 1e-4F) {
+        flesh.swellings.push_back({static_cast<int>(s), bump[s],
+                                   static_cast<float>(area(state.vertex[s])), outward[s]});
+      }
+    }
+    joints_.push_back(std::move(flesh));
+  }
+}
+
+float JointVolumes::cone(const Triangle& triangle, const std::vector<Float4>& position,
+                         Float4 tip) {
+  return dot3(position[triangle.slot[0]] - tip,
+              cross3(position[triangle.slot[1]] - tip, position[triangle.slot[2]] - tip));
+}
+
+double JointVolumes::lost(const JointFlesh& flesh, const std::vector<Float4>& position) {
+  const std::size_t count = flesh.triangles.size();
+  partial_.assign((count + kTrianglesOfTask - 1) / kTrianglesOfTask, 0.0);
+  parallel_blocks(count, kTrianglesOfTask, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle& t = flesh.triangles[i];
+      const float share = t.mobility * flesh.turn / moved_[t.face];
+      sum += static_cast<double>(share * (t.rest - cone(t, position, flesh.place)));
+    }
+    partial_[begin / kTrianglesOfTask] = sum;
+  });
+  return std::accumulate(partial_.begin(), partial_.end(), 0.0) / 6;
+}
+
+void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
+                            const std::vector<Float4>& rotations) {
+  std::fill(moved_.begin(), moved_.end(), 0.0F);
+  for (JointFlesh& flesh : joints_) {
+    flesh.bends = field.groups()[flesh.joint] != field.groups()[flesh.parent];
+    flesh.swelling = 0;
+    if (!flesh.bends) continue;
+    const Eigen::Matrix3d& own = field.rotations()[flesh.joint];
+    const Eigen::Matrix3d& parent = field.rotations()[flesh.parent];
+    flesh.place = as_float4(pose[flesh.joint] * flesh.head);
+    flesh.turn = static_cast<float>(std::max(0.0, 3 - own.cwiseProduct(parent).sum())) + 1e-12F;
+    for (const Triangle& t : flesh.triangles) moved_[t.face] += t.mobility * flesh.turn;
+    const Float4 inner = as_float4((own - parent) * flesh.along / 2);
+    flesh.area = 0;
+    for (Swelling& swelling : flesh.swellings) {
+      const Float4 outward = turned(rotations[swelling.slot], swelling.outward);
+      const float cosine = dot3(inner, outward);
+      const float inside = kInside * std::max(0.0F, cosine);
+      const float share = swelling.share * std::exp(-inside * inside);
+      swelling.way = splat(share) * outward;
+      flesh.area += static_cast<double>(share * swelling.area);
+    }
+  }
+}
+
+void JointVolumes::restore(std::vector<Float4>& base, std::vector<Float4>& position) {
+  for (JointFlesh& flesh : joints_) {
+    if (!flesh.bends || !(flesh.area > 0)) continue;
+    const double missing = lost(flesh, position);
+    const double before = flesh.swelling;
+    flesh.swelling = std::clamp(before + missing / flesh.area, -flesh.largest, flesh.largest);
+    const auto more = static_cast<float>(flesh.swelling - before);
+    for (const Swelling& swelling : flesh.swellings) {
+      const Float4 way = splat(more) * swelling.way;
+      base[swelling.slot] += way;
+      position[swelling.slot] += way;
+    }
+  }
+}
+
+}  // namespace geoprior::skinning

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/inputs/rig.h"
+#include "solvers/skinning/field/bones.h"
+#include "solvers/skinning/field/composition.h"
+#include "solvers/skinning/field/simd.h"
+#include "solvers/skinning/projection/skin_state.h"
+
+namespace geoprior::skinning {
+
+/// The volume of the flesh about each joint, and a swelling of the skin that gives it back.
+///
+/// With c_j the place of joint j and m_j(v) shares of the vertices' skin (they sum to 1 over the
+/// joints at the two ends of the vertex' bone),
+///
+///   V_j = sum over triangles of  m_j (x_a - c_j) . ((x_b - c_j) x (x_c - c_j)) / 6
+///
+/// Skin that moves with one of the two bones turns about c_j and leaves V_j as it is, wherever m_j
+/// ends; so what V_j loses, the skin between them has lost. The skin swells along its normals by
+/// s_j p_j, p_j a bump about the joint, until the loss is none.
+class JointVolumes {
+ public:
+  /// @param radius  local, of each slot (m)
+  JointVolumes(const RiggedMesh& rig, const BonePartition& partition, const SkinState& state,
+               const std::vector<float>& radius);
+
+  /// Which joints bend in a pose, and where; nothing is swollen yet.
+  /// @param rotations  of the slots: unit quaternions (x, y, z, w)
+  void set_pose(const FieldComposition& field, const Pose& pose, const std::vector<Float4>& rotations);
+
+  /// Swells `base` so that the volume of `position` comes back to first order; `position` moves
+  /// with it.
+  void restore(std::vector<Float4>& base, std::vector<Float4>& position);
+
+ private:
+  struct Triangle {
+    int face;
+    std::array<int, 3> slot;
+    float mobility;  ///< how much the joint's turn moves it unlike a rigid piece
+    float rest;      ///< six volumes of its cone at rest (m^3)
+  };
+  struct Swelling {
+    int slot;
+    float share;
+    float area;
+    Float4 outward{};  ///< unit, at rest
+    Float4 way{};
+  };
+  struct JointFlesh {
+    int joint = 0;
+    int parent = 0;
+    Eigen::Vector3d head;
+    Eigen::Vector3d along;
+    std::vector<Triangle> triangles;
+    std::vector<Swelling> swellings;
+    double area = 0;     ///< dV_j / ds_j of skin that swells freely (m^2)
+    double largest = 0;  ///< of s_j (m)
+    double swelling = 0;
+    Float4 place{};
+    float turn = 0;  ///< squared
+    bool bends = false;
+  };
+
+  static float cone(const Triangle& triangle, const std::vector<Float4>& position, Float4 tip);
+  [[nodiscard]] double lost(const JointFlesh& flesh, const std::vector<Float4>& position);
+
+  std::vector<JointFlesh> joints_;
+  std::vector<float> moved_;  // per face: sum of the joints' mobility times their turn
+  std::vector<double> partial_;
+};
+
+}  // namespace geoprior::skinning
