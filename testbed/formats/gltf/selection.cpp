@@ -110,6 +110,42 @@ std::vector<std::size_t> roots_of(const Model& model) {
   return roots;
 }
 
+/// Which skins share a joint, or have a joint below one of the other.
+DisjointSets related_skins(const Model& model) {
+  std::vector<std::vector<int>> skins_of_node(model.nodes.size());
+  for (std::size_t s = 0; s < model.skins.size(); ++s) {
+    for (const std::size_t joint : model.skins[s].joints)
+      skins_of_node[joint].push_back(static_cast<int>(s));
+  }
+  DisjointSets sets(static_cast<int>(model.skins.size()));
+  std::vector<int> above(model.nodes.size(), -1);  // skin of the nearest joint at or above a node
+  for (const std::size_t i : model.node_order) {
+    const Node& node = model.nodes[i];
+    if (node.parent) above[i] = above[*node.parent];
+    for (const int skin : skins_of_node[i])
+      above[i] = above[i] < 0 ? skin : sets.join(skin, above[i]);
+  }
+  return sets;
+}
+
+/// Notes skins that are one skeleton by a common node alone: they may be two characters.
+void note_unrelated(const Model& model, const std::vector<std::size_t>& skins,
+                    std::vector<std::string>& notes) {
+  DisjointSets related = related_skins(model);
+  const auto first = static_cast<int>(skins[0]);
+  std::string others;
+  for (const std::size_t skin : skins) {
+    if (related.find(static_cast<int>(skin)) != related.find(first))
+      others += " and " + std::to_string(skin);
+  }
+  if (others.empty()) return;
+  notes.push_back("skins " + std::to_string(first) + others +
+                  " share no joint: they are read as one character, as their joints hang on node "
+                  "'" +
+                  model.nodes[roots_of(model)[model.skins[skins[0]].joints[0]]].name +
+                  "' (mesh = \"…\" reads one)");
+}
+
 /// Which skins belong to one skeleton.
 DisjointSets skeletons(const Model& model) {
   const std::vector<std::size_t> roots = roots_of(model);
@@ -230,6 +266,7 @@ Selection select_meshes(const Model& model, const std::optional<std::string>& me
     for (const std::size_t joint : model.skins[*skin].joints) is_joint[joint] = true;
   }
   sort_by_root(model, selection.skins);
+  note_unrelated(model, selection.skins, selection.notes);
   take_meshes(model, nodes, skeleton, is_joint, selection);
   return selection;
 }

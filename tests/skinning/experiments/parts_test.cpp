@@ -61,6 +61,9 @@ TEST_F(PartsOfACharacter, OfTwoSkeletonsBelowOneNodeAreOneCharacter) {
   write_character(s);
   const auto both = load("");
   EXPECT_EQ(both->rig.skeleton.size(), 4);
+  EXPECT_THAT(both->load_warnings,
+              ElementsAre(HasSubstr("skins 0 and 1 share no joint: they are read as one character, "
+                                    "as their joints hang on node 'armature'")));
   EXPECT_EQ(both->rig.mesh.vertex_count(), 2 * tube.mesh.vertex_count());
 }
 
