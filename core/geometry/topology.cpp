@@ -52,7 +52,7 @@ std::string edge_list(const std::vector<Edge>& edges) {
 }
 
 struct PositionHash {
-  std::size_t operator()(const std::array<std::uint64_t, 3>& key) const {
+  std::size_t operator()(const std::array<std::uint64_t, 4>& key) const {
     std::uint64_t h = 0;
     for (const std::uint64_t k : key) h = (std::rotl(h, 5) ^ k) * 0x9E3779B97F4A7C15ULL;
     return h ^ (h >> 32);
@@ -120,12 +120,13 @@ void require_closed_manifold(const TriMesh& mesh, const std::string& who,
   }
 }
 
-Weld weld_by_position(const TriMesh& split) {
+Weld weld_by_position(const TriMesh& split, std::span<const int> part) {
   Weld weld;
-  std::unordered_map<std::array<std::uint64_t, 3>, int, PositionHash> seen;
+  std::unordered_map<std::array<std::uint64_t, 4>, int, PositionHash> seen;
   for (int v = 0; v < split.vertex_count(); ++v) {
-    std::array<std::uint64_t, 3> key{};
+    std::array<std::uint64_t, 4> key{};
     for (int k = 0; k < 3; ++k) key[k] = std::bit_cast<std::uint64_t>(split.V(v, k) + 0.0);
+    if (!part.empty()) key[3] = static_cast<std::uint64_t>(part[v]);
     const auto [it, is_new] = seen.emplace(key, static_cast<int>(weld.split_of_welded.size()));
     if (is_new) weld.split_of_welded.push_back(v);
     weld.welded_of_split.push_back(it->second);

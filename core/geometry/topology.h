@@ -54,6 +54,7 @@ struct Weld {
 
 /// Welds vertices whose positions are bitwise equal (-0 equals 0). Welded vertices keep the order
 /// of first appearance.
-Weld weld_by_position(const TriMesh& split);
+/// @param part  of each vertex: those of different parts stay apart; empty: one part
+Weld weld_by_position(const TriMesh& split, std::span<const int> part = {});
 
 }  // namespace geoprior

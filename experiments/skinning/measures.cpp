@@ -70,8 +70,14 @@ bool is_closed(Shared& shared, const TriMesh& mesh) {
   return shared.closed.get(key, [&] { return boundary_edges(mesh.F).empty(); });
 }
 
-/// About the region's joints, or of the whole body (null); above rest.
-std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const JointRegion* region) {
+/// The file's own skin: a cap meets it at an edge that nobody sees, and bends as its border does.
+TriMesh without_caps(const SkinningScene& scene) {
+  return {scene.rig.mesh.V, scene.rig.mesh.F.topRows(scene.skin_triangles())};
+}
+
+/// About the region's joints, or of the whole body (null); posed, at rest, and the difference.
+std::optional<OverlapPair> overlap_pair(Shared& shared, const Measured& m,
+                                        const JointRegion* region) {
   if (!is_closed(shared, m.mesh())) return std::nullopt;
   const auto study = [&](const Eigen::MatrixX3d& V, const Pose& pose) {
     ContentKey key = key_of(m.mesh(), V);
@@ -83,7 +89,13 @@ std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const Join
     });
   };
   const OverlapStudy rest = study(m.mesh().V, rest_pose(m.scene.rig.skeleton.size()));
-  return overlap_above_rest(study(m.posed, m.pose), rest);
+  const OverlapStudy posed = study(m.posed, m.pose);
+  return OverlapPair{overlap_above_rest(posed, rest), posed.volume, rest.volume};
+}
+
+std::optional<OverlapStudy> excess(Shared& shared, const Measured& m, const JointRegion* region) {
+  const std::optional<OverlapPair> pair = overlap_pair(shared, m, region);
+  return pair ? std::optional(pair->above) : std::nullopt;
 }
 
 /// All pairs of triangles that intersect; remembered, because the rest pose and dual quaternions'
@@ -179,12 +191,12 @@ Value volume_change_union_body(Shared& shared, const Measured& m) {
   return union_volume_change(m.mesh().V, m.posed, m.mesh().F, *above, rest);
 }
 
-std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m) {
-  return excess(shared, m, m.region());
+std::optional<OverlapPair> overlap_excess(Shared& shared, const Measured& m) {
+  return overlap_pair(shared, m, m.region());
 }
 
-std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m) {
-  return excess(shared, m, nullptr);
+std::optional<OverlapPair> overlap_excess_body(Shared& shared, const Measured& m) {
+  return overlap_pair(shared, m, nullptr);
 }
 
 std::optional<RegionOverlaps> overlap_of_regions(Shared& shared, const Measured& m) {
@@ -228,8 +240,9 @@ Pairs pairs(Shared& shared, const Measured& m) {
 }
 
 std::optional<RoughnessMeasures> roughness(Shared& shared, const Measured& m) {
+  const TriMesh skin = without_caps(m.scene);
   const auto surface = shared.roughness.get(
-      key_of(m.mesh(), m.mesh().V), [&] { return std::make_shared<const Roughness>(m.mesh()); });
+      key_of(skin, skin.V), [&] { return std::make_shared<const Roughness>(skin); });
   const Eigen::VectorXd folds = surface->folds(m.posed);
   const Eigen::VectorXd lumps = surface->lumps(m.posed);
   const std::vector<int> all = vertices_of_regions(
@@ -256,7 +269,9 @@ std::optional<SectionSummary> section_summary(const Measured& m) {
 
 std::optional<DistortionSummary> region_distortion(const Measured& m) {
   if (!m.region()) return std::nullopt;
-  return distortion(m.mesh().V, m.posed, m.mesh().F, m.region()->triangles);
+  std::vector<int> triangles = m.region()->triangles;
+  std::erase_if(triangles, [&](int t) { return t >= m.scene.skin_triangles(); });
+  return distortion(m.mesh().V, m.posed, m.mesh().F, triangles);
 }
 
 Value rest_identity(const Measured& m) {

@@ -71,11 +71,17 @@ Value volume_change_global(Shared& shared, const Measured& m);
 Value volume_change_union(Shared& shared, const Measured& m);
 Value volume_change_union_body(Shared& shared, const Measured& m);
 
-/// Overlap above rest (raw) with its noise floor, about the region's joints (of the whole body
-/// without a region); absent for an open mesh.
-std::optional<OverlapStudy> overlap_excess(Shared& shared, const Measured& m);
+/// What overlaps in a pose beyond what did at rest, and both: of parts that lie in one another at
+/// rest (clothes, eyes) the difference alone would hide what a pose takes apart.
+struct OverlapPair {
+  OverlapStudy above;  ///< with the noise floors of both; below zero where rest overlaps more
+  double posed = 0;    ///< m^3
+  double at_rest = 0;  ///< m^3
+};
+/// About the region's joints (of the whole body without a region); absent for an open mesh.
+std::optional<OverlapPair> overlap_excess(Shared& shared, const Measured& m);
 /// The same of the whole body.
-std::optional<OverlapStudy> overlap_excess_body(Shared& shared, const Measured& m);
+std::optional<OverlapPair> overlap_excess_body(Shared& shared, const Measured& m);
 /// Each 0 up to the floor, else over the reference's excess or the floor, whichever is larger.
 struct OverlapRatios {
   double box = 0;   ///< about the region's joints; of the whole body without a region

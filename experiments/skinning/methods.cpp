@@ -29,8 +29,8 @@ Part surface_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
   return part;
 }
 
-/// The skin with the vertices of the input file, split at seams: what goes back to the program it
-/// came from.
+/// The skin with the vertices and triangles of the input file, split at seams and without caps:
+/// what goes back to the program it came from.
 Part input_part(const SkinningScene& scene, const Eigen::MatrixX3d& posed) {
   Part part;
   part.points.resize(scene.input_mesh.V.rows(), 3);
@@ -102,7 +102,8 @@ class SkinningMethod final : public PoseMethod {
     Frame frame;
     frame.parameter = parameter_;
     frame.parts["surface"] = surface_part(scene_, posed_);
-    if (scene_.input_mesh.vertex_count() != scene_.rig.mesh.vertex_count()) {
+    if (scene_.input_mesh.vertex_count() != scene_.rig.mesh.vertex_count() ||
+        scene_.cap_triangles > 0) {
       frame.parts["input"] = input_part(scene_, posed_);
     }
     frame.parts["bones"] = bones_part(scene_, scene_.pose_at(parameter_));

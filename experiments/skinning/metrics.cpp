@@ -76,19 +76,32 @@ MetricGroup body_union_volume_group(const SharedPtr& shared) {
            kTarget, kRatio);
 }
 
+auto above_rest(double OverlapStudy::*quantity) {
+  return [quantity](const OverlapPair& pair) { return pair.above.*quantity; };
+}
+
+double above_floor(const OverlapPair& pair) { return pair.above.above_floor(); }
+
 MetricGroup overlap_group(const SharedPtr& shared) {
   return of_frame([shared](const Measured& m) { return overlap_excess(*shared, m); })
       .row("overlap_excess", "m^3",
            "integral of max(0, winding number - 1) over the box about the region's "
            "joints (whole body without a region) minus the same at rest; 0 where it "
            "does not exceed overlap_noise_floor",
-           kLow, kVolume, &OverlapStudy::above_floor)
-      .row("overlap_excess_raw", "m^3", "overlap_excess before it is set to 0", kLow, kVolume,
-           &OverlapStudy::volume)
+           kLow, kVolume, above_floor)
+      .row("overlap_excess_raw", "m^3",
+           "overlap_excess before it is set to 0; below 0 where less overlaps than at rest", kLow,
+           kVolume, above_rest(&OverlapStudy::volume))
       .row("overlap_noise_floor", "m^3",
            "largest difference of the overlap between column spacings h and h/2 and "
            "between two column axes, at least the overlap that fits between columns",
-           Direction::none, kVolume, &OverlapStudy::noise_floor);
+           Direction::none, kVolume, above_rest(&OverlapStudy::noise_floor))
+      .row("overlap_posed", "m^3", "what overlap_excess takes overlap_at_rest from",
+           Direction::none, kVolume, &OverlapPair::posed)
+      .row("overlap_at_rest", "m^3",
+           "the overlap at rest that overlap_excess is beyond: parts that lie in one another, as "
+           "clothes on a body, overlap in every pose",
+           Direction::none, kVolume, &OverlapPair::at_rest);
 }
 
 MetricGroup body_overlap_group(const SharedPtr& shared) {
@@ -96,13 +109,17 @@ MetricGroup body_overlap_group(const SharedPtr& shared) {
       .row("overlap_excess_body", "m^3",
            "integral of max(0, winding number - 1) over the whole body minus the same at rest; 0 "
            "where it does not exceed overlap_noise_floor_body",
-           kLow, kVolume, &OverlapStudy::above_floor)
+           kLow, kVolume, above_floor)
       .row("overlap_excess_raw_body", "m^3", "overlap_excess_body before it is set to 0", kLow,
-           kVolume, &OverlapStudy::volume)
+           kVolume, above_rest(&OverlapStudy::volume))
       .row("overlap_noise_floor_body", "m^3",
            "of overlap_excess_body, as overlap_noise_floor; columns a 768th of the body's diagonal "
            "apart, and half of that",
-           Direction::none, kVolume, &OverlapStudy::noise_floor);
+           Direction::none, kVolume, above_rest(&OverlapStudy::noise_floor))
+      .row("overlap_posed_body", "m^3", "what overlap_excess_body takes overlap_at_rest_body from",
+           Direction::none, kVolume, &OverlapPair::posed)
+      .row("overlap_at_rest_body", "m^3", "overlap_at_rest of the whole body", Direction::none,
+           kVolume, &OverlapPair::at_rest);
 }
 
 MetricGroup region_overlaps_group(const SharedPtr& shared) {

@@ -163,6 +163,20 @@ SkinWeights computed_weights(const CharacterOptions& options, const RiggedMesh& 
   return heat_weights(rig.mesh, rig.skeleton, options.heat);
 }
 
+/// Closes the holes of the skin, where they are to be closed; says what was found.
+HoleCaps cap(const CharacterOptions& options, Character& character) {
+  if (options.holes == Holes::keep) return {};
+  HoleCaps caps = put_caps_on(character.rig.mesh);
+  character.cap_triangles = static_cast<int>(caps.triangles.size());
+  return caps;
+}
+
+/// Opens them again: what changes the mesh goes by its own border.
+void uncap(Character& character) {
+  take_caps_off(character.rig.mesh, character.cap_triangles);
+  character.cap_triangles = 0;
+}
+
 /// @param given  weights that came with the character, on its skeleton; absent: there are none
 void choose_weights(const CharacterOptions& options, const std::string& file,
                     std::optional<SkinWeights> given, Character& character) {
@@ -173,8 +187,23 @@ void choose_weights(const CharacterOptions& options, const std::string& file,
   character.rig.weights = keep ? std::move(*given) : computed_weights(options, character.rig);
 }
 
-void take_mesh(TriMesh split, Character& character, Weld& weld) {
-  weld = weld_by_position(split);
+/// Parts that meet at seams are welded to one skin; where parts that touch would become one along
+/// edges of more than two triangles, as two boxes on each other, they stay apart.
+Weld weld_parts(const TriMesh& split, const std::vector<int>& part, const std::string& where,
+                std::vector<std::string>& warnings) {
+  Weld all = weld_by_position(split);
+  const std::size_t crowded = non_manifold_edges(all.mesh.F).size();
+  if (crowded == 0 || part.empty() || part.front() == part.back()) return all;
+  Weld apart = weld_by_position(split, part);
+  if (non_manifold_edges(apart.mesh.F).size() >= crowded) return all;
+  warnings.push_back(where + ": its parts touch along " + std::to_string(crowded) +
+                     " edges that would have more than two triangles: they are not welded to each "
+                     "other");
+  return apart;
+}
+
+void take_mesh(TriMesh split, const std::vector<int>& part, Character& character, Weld& weld) {
+  weld = weld_parts(split, part, character.files.front().string(), character.warnings);
   character.rig.mesh = weld.mesh;
   character.welded_of_input = weld.welded_of_split;
   drop_degenerate(split, weld.welded_of_split);
@@ -204,9 +233,23 @@ void scale_to_metres(Skeleton& skeleton, double unit_m) {
   }
 }
 
+/// Two characters of one file would be one of two parts that have nothing to do with each other.
+void require_one_skeleton(const GltfCharacter& character, const fs::path& file) {
+  if (character.other_skins.empty()) return;
+  std::string others;
+  for (const std::string& skin : character.other_skins) others += " and " + skin;
+  throw Error(character.first_skin + others +
+                  " share no joint and hang on no common node, as two characters do",
+              file.string(), "mesh = \"…\", the name of one of these meshes, or one root for all");
+}
+
 GltfCharacter read_character_file(const fs::path& file, const std::optional<std::string>& mesh) {
   const std::string extension = lower(file.extension().string());
-  if (extension == ".glb" || extension == ".gltf") return read_gltf(file, {mesh});
+  if (extension == ".glb" || extension == ".gltf") {
+    GltfCharacter character = read_gltf(file, {mesh});
+    require_one_skeleton(character, file);
+    return character;
+  }
   throw Error("is no file that a character is read from", file.string(),
               "glTF 2.0 (.glb, .gltf), skinned or, without skin, with skeleton = "
               "\"<name>.skeleton.toml\"; programs such as Blender write it");
@@ -221,11 +264,12 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   TriMesh split = gltf.mesh;
   split.V *= options.unit_m;
   Weld weld;
-  take_mesh(std::move(split), character, weld);
+  take_mesh(std::move(split), gltf.part_of_vertex, character, weld);
   std::vector<std::string> left_out;
   note_collapsed(gltf.mesh, weld.mesh, left_out);
   for (const std::string& note : left_out)
     character.warnings.push_back(file.string() + ": " + note);
+  const HoleCaps caps = cap(options, character);
   turn_outwards(file, character);
   if (options.skeleton) read_skeleton_option(*options.skeleton, folder, character);
   if (!gltf.skeleton && !character.skeleton_file) {
@@ -246,6 +290,8 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
     take_skeleton_file(gltf.skeleton.value_or(Skeleton{}), file.string(), given, character);
   }
   choose_weights(options, file.string(), std::move(given), character);
+  for (const std::string& note : hole_notes(caps, character.rig))
+    character.warnings.push_back(file.string() + ": " + note);
   character.gltf = std::move(gltf);
 }
 
@@ -332,9 +378,11 @@ void simplify_character(const CharacterOptions& options, int target, Character& 
     throw Error("weights of the file do not survive simplify_to", "scene.weights",
                 "weights that are computed");
   const int before = character.rig.mesh.vertex_count();
+  uncap(character);
   character.rig.mesh = simplify(character.rig.mesh, target);
   character.input_mesh = character.rig.mesh;
   character.welded_of_input = identity(character.rig.mesh.vertex_count());
+  cap(options, character);
   character.rig.weights = computed_weights(options, character.rig);
   character.warnings.push_back("simplified from " + std::to_string(before) + " to " +
                                std::to_string(character.rig.mesh.vertex_count()) +
@@ -367,10 +415,13 @@ Character load_character(const CharacterOptions& options, const fs::path& folder
     load_file(options, find_input(options.character, folder), folder, character);
   }
   if (options.simplify_to) simplify_character(options, *options.simplify_to, character);
+  if (options.refine.empty()) return character;
   require_refinable(options.refine, character.rig);
+  uncap(character);
   for (std::size_t i = 0; i < options.refine.size(); ++i) {
     refine(options.refine[i], "scene.refine." + std::to_string(i), character);
   }
+  cap(options, character);
   return character;
 }
 
@@ -417,17 +468,23 @@ void describe(OptionVisitor& v, RefineOptions& options) {
 void describe(OptionVisitor& v, CharacterOptions& options) {
   static constexpr std::array<std::string_view, 5> kWeights{"file-or-heat", "file", "heat",
                                                             "bounded", "narrow"};
+  static constexpr std::array<std::string_view, 2> kHoles{"cap", "keep"};
   v.value("character", options.character,
           {.doc = "\"human\", \"cylinder\", \"finger\", or a .glb or .gltf file",
            .named = Named::file});
   v.value(
       "mesh", options.mesh,
       {.doc = "name of the mesh of the file that is read; absent: all of its scene that move with "
-              "its first skeleton, without one all"});
+              "one skeleton, of one skin or several; without a skeleton all"});
   v.value("skeleton", options.skeleton,
           {.doc = "skeleton file that overrides the file's hierarchy", .named = Named::file});
   v.value("unit_m", options.unit_m,
           {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
+  describe_choice(v, "holes", options.holes, kHoles,
+                  {.doc = "what becomes of holes of the skin: closed by caps on the vertices of "
+                          "their borders, for weights, methods and metrics but not in what is "
+                          "written back, or left open, so that methods that need an inside are "
+                          "refused and volumes absent"});
   describe_choice(
       v, "weights", options.weights, kWeights,
       {.doc = "where weights come from: the file, heat diffusion, bounded and smooth, or "

@@ -7,6 +7,7 @@
 
 #include "core/geometry/procedural.h"
 #include "core/options.h"
+#include "experiments/skinning/scene/hole_caps.h"
 #include "experiments/skinning/scene/skeleton_file.h"
 #include "experiments/skinning/weights/bounded_weights.h"
 #include "experiments/skinning/weights/heat_weights.h"
@@ -31,6 +32,7 @@ struct CharacterOptions {
   std::optional<std::string> mesh;
   std::optional<std::string> skeleton;
   double unit_m = 1;
+  Holes holes = Holes::cap;
   WeightSource weights = WeightSource::file_or_heat;
   HeatWeightsOptions heat;
   BoundedWeightsOptions bounded;
@@ -46,6 +48,7 @@ void describe(OptionVisitor& v, CharacterOptions& options);
 /// A character in its rest pose, with all that is needed to move it and to write it back.
 struct Character {
   RiggedMesh rig;                    ///< welded
+  int cap_triangles = 0;             ///< the last ones of `rig.mesh`, which close its holes
   TriMesh input_mesh;                ///< split at seams as in the file, refined alike
   std::vector<int> welded_of_input;  ///< for each vertex of `input_mesh`
   std::optional<SkeletonFile> skeleton_file;

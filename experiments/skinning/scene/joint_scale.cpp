@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kRigid = 1e-3;  ///< scale that single precision and rounded keys leave
 
+constexpr double kLost = 1e-6;  ///< scale that leaves nothing
+
+double smallest_scale(const Eigen::Matrix3d& linear) {
+  return Eigen::JacobiSVD<Eigen::Matrix3d>(linear).singularValues()[2];
+}
+
 std::vector<bool> joints_with_weight(const SkinWeights& weights) {
   std::vector<bool> has_weight(weights.cols(), false);
   for (int v = 0; v < weights.rows(); ++v)
@@ -37,6 +43,32 @@ std::optional<ScaledJoint> most_scaled_joint(const std::vector<Pose>& poses,
     }
   }
   return std::abs(most.factor - 1) > kRigid ? std::optional(most) : std::nullopt;
+}
+
+std::optional<LostJoint> lost_joint(const std::vector<Pose>& poses, const RiggedMesh& rig) {
+  std::vector<bool> moves_skin = joints_with_weight(rig.weights);
+  for (int j = rig.skeleton.size() - 1; j > 0; --j) {  // parents come first
+    const int parent = rig.skeleton.joints[j].parent;
+    if (moves_skin[j] && parent >= 0) moves_skin[parent] = true;
+  }
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    for (std::size_t j = 0; j < poses[f].size(); ++j) {
+      if (!moves_skin[j]) continue;
+      const bool is_finite = poses[f][j].matrix().allFinite();
+      if (is_finite && smallest_scale(poses[f][j].linear()) > kLost) continue;
+      return LostJoint{static_cast<int>(j), f, is_finite};
+    }
+  }
+  return std::nullopt;
+}
+
+void refuse_lost(const std::string& what, const LostJoint& lost, const Skeleton& skeleton,
+                 const std::string& when, const std::string& file) {
+  throw Error(what + (lost.is_finite ? " scales joint '" : " has no finite transform of joint '") +
+                  skeleton.joints[lost.joint].name + (lost.is_finite ? "' to zero" : "'") + when,
+              file,
+              "finite scales above zero, of nodes and in clips; joint_scale = \"strip\" plays a "
+              "clip without");
 }
 
 std::string scale_text(const ScaledJoint& scaled, const Skeleton& skeleton,

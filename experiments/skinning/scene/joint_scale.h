@@ -24,6 +24,24 @@ struct ScaledJoint {
 /// their size within a thousandth.
 std::optional<ScaledJoint> most_scaled_joint(const std::vector<Pose>& poses, const RiggedMesh& rig);
 
+/// A joint of which a frame leaves nothing, or nothing that is finite.
+struct LostJoint {
+  int joint = 0;
+  std::size_t frame = 0;
+  bool is_finite = true;  ///< scaled to zero in some direction
+};
+
+/// The first frame and the topmost joint that is lost, of those that move skin, themselves or by a
+/// joint below them.
+std::optional<LostJoint> lost_joint(const std::vector<Pose>& poses, const RiggedMesh& rig);
+
+/// @throws Error  always, naming the joint
+/// @param what  "the clip 'walk'"
+/// @param when  " at 1 s", or nothing
+[[noreturn]] void refuse_lost(const std::string& what, const LostJoint& lost,
+                              const Skeleton& skeleton, const std::string& when,
+                              const std::string& file);
+
 /// "scales joint 'B' by 2 at 1 s".
 std::string scale_text(const ScaledJoint& scaled, const Skeleton& skeleton,
                        const std::vector<double>& times_s);

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "testbed/runner/number_text.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -136,6 +137,14 @@ Pose convert_pose(const Pose& pose, const Character& character) {
   return result;
 }
 
+/// The bind pose is the rest pose; a file that shows nothing of a joint is refused all the same.
+void require_joints_at_rest(const Character& character) {
+  if (!character.gltf || !character.gltf->skeleton) return;
+  const Pose rest = convert_pose(clip_pose(*character.gltf, {}, 0), character);
+  if (const auto lost = lost_joint({rest}, character.rig))
+    refuse_lost("the file's scene", *lost, character.rig.skeleton, "", character.files[0].string());
+}
+
 const GltfClip& find_clip(const MotionOptions& options, const Character& character) {
   if (!character.gltf || !character.gltf->skeleton || character.gltf->clips.empty())
     throw Error("the character's file has no skin with an animation", "scene.motion",
@@ -172,15 +181,27 @@ Motion make_clip(const MotionOptions& options, const Character& character) {
   };
   for (int i = 0; i < options.frames; ++i)
     motion.parameters.push_back(at_fraction(start, end, i, options.frames));
+  const std::string file = character.files[0].string();
+  const auto require_joints = [&] {
+    if (const auto lost = lost_joint(motion.poses, character.rig)) {
+      refuse_lost("the clip '" + clip.name + "'", *lost, character.rig.skeleton,
+                  " at " + rounded_text(motion.parameters[lost->frame]) + " s", file);
+    }
+  };
   play(ClipScale::played);
+  if (options.joint_scale == JointScale::refuse) require_joints();
   const auto scaled = most_scaled_joint(motion.poses, character.rig);
-  if (!scaled) return motion;
+  if (!scaled) {
+    require_joints();
+    return motion;
+  }
   const std::string what = "the clip '" + clip.name + "' " +
                            scale_text(*scaled, character.rig.skeleton, motion.parameters);
-  if (options.joint_scale == JointScale::refuse) refuse_scale(what, character.files[0].string());
+  if (options.joint_scale == JointScale::refuse) refuse_scale(what, file);
   play(ClipScale::left_out);
+  require_joints();
   for (Pose& pose : motion.poses) make_rigid(character.rig.skeleton, pose);
-  motion.warnings.push_back(character.files[0].string() + ": " + what +
+  motion.warnings.push_back(file + ": " + what +
                             "; it is played without scale (joint_scale = \"strip\")");
   return motion;
 }
@@ -302,6 +323,7 @@ void describe(OptionVisitor& v, MotionOptions& options) {
 
 Motion make_motion(const MotionOptions& options, const Character& character,
                    const std::filesystem::path& folder) {
+  if (options.kind != MotionKind::clip) require_joints_at_rest(character);
   switch (options.kind) {
     case MotionKind::ramp:
       return make_ramp(options, character.rig.skeleton);

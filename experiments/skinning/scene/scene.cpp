@@ -94,6 +94,7 @@ std::map<std::string, double> SkinningScene::facts() const {
           {"joints", rig.skeleton.size()},
           {"influences",
            static_cast<double>(rig.weights.nonZeros()) / std::max(1, rig.mesh.vertex_count())},
+          {"cap_triangles", cap_triangles},
           {"boundary_edges", static_cast<double>(boundary_edges(rig.mesh.F).size())},
           {"regions", static_cast<double>(regions.size())}};
 }
@@ -115,6 +116,7 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   scene->regions = make_regions(options, character.rig, motion);
   scene->bending_view = bending_camera(character.rig, motion, scene->regions);
   scene->rig = std::move(character.rig);
+  scene->cap_triangles = character.cap_triangles;
   scene->input_mesh = std::move(character.input_mesh);
   scene->welded_of_input = std::move(character.welded_of_input);
   scene->frame_parameter = std::move(motion.parameters);

@@ -29,6 +29,7 @@ void describe(OptionVisitor& v, SkinningSceneOptions& options);
 class SkinningScene final : public Scene {
  public:
   RiggedMesh rig;                    ///< welded, refined as asked
+  int cap_triangles = 0;             ///< the last ones of `rig.mesh`, which close holes of the file
   TriMesh input_mesh;                ///< as the file had it, split at seams (refined the same way)
   std::vector<int> welded_of_input;  ///< for each vertex of `input_mesh`, its vertex in `rig.mesh`
   std::vector<double> frame_parameter;
@@ -52,6 +53,9 @@ class SkinningScene final : public Scene {
   /// Pose at a parameter: that of the frame whose parameter is equal; throws Error when there is
   /// none.
   [[nodiscard]] const Pose& pose_at(double parameter) const;
+
+  /// Triangles of `rig.mesh` without the caps.
+  [[nodiscard]] int skin_triangles() const { return rig.mesh.triangle_count() - cap_triangles; }
 };
 
 /// Loads the character, makes the motion's poses and chooses the regions: joints of a ramp that are

@@ -50,12 +50,16 @@ struct GltfBinding {
 /// What of a glTF file a rigged character is made of.
 struct GltfCharacter {
   TriMesh mesh;                      ///< as the file has it, split at seams; rest pose
+  std::vector<int> part_of_vertex;   ///< which of the meshes that were read, in their order
   std::optional<Skeleton> skeleton;  ///< absent: no skin
   SkinWeights weights;               ///< split vertices x joints, rows sum to 1; empty: no skin
   GltfBinding binding;
   std::vector<GltfClip> clips;
   std::vector<std::string> warnings;  ///< what was left out, by name, or repaired; a few of a kind
   std::vector<std::filesystem::path> files;  ///< the file and its buffers
+  /// Where meshes of other skeletons were left out: the skin that was read, and those.
+  std::string first_skin;
+  std::vector<std::string> other_skins;
 };
 
 /// Whether tracks of scale are played; nodes keep their scale at rest where they are left out.

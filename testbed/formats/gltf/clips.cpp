@@ -37,7 +37,12 @@ GltfTrack read_track(const Model& model, const Sampler& sampler, Property proper
     if (!std::isfinite(track.times[i]) || !increases)
       throw Error("the times do not increase at key " + std::to_string(i), where);
   }
-  if (!track.values.allFinite()) throw Error("a value is not finite", where);
+  for (Eigen::Index r = 0; r < track.values.rows(); ++r) {
+    if (track.values.row(r).allFinite()) continue;
+    throw Error("a value is not finite at " +
+                    std::to_string(track.times[r / static_cast<Eigen::Index>(rows)]) + " s",
+                where);
+  }
   return track;
 }
 
@@ -63,7 +68,8 @@ std::vector<GltfClip> read_clips(const Model& model, const std::vector<int>& nod
       if (!property) other_paths = true;
       if (!property || !channel.node) continue;
       const std::string where =
-          place(model, "/animations/" + std::to_string(a) + "/channels/" + std::to_string(c));
+          place(model, "/animations/" + std::to_string(a) + "/channels/" + std::to_string(c)) +
+          ", " + channel.path + " of '" + model.nodes[*channel.node].name + "'";
       if (model.nodes[*channel.node].matrix)
         throw Error("animates a node that is given by a matrix", where,
                     "nodes with translation, rotation and scale");

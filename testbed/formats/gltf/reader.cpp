@@ -347,6 +347,11 @@ std::vector<Placement> placements(const Model& model, const gltf::Selection& sel
       result.push_back({skin->first_to_rest, skin, -1});
     } else if (shown.joint_node) {
       const int joint = joint_of.at(*shown.joint_node);
+      if (gltf::is_flat(world[*shown.joint_node].linear())) {
+        throw Error("joint '" + rig.skeleton.joints[joint].name + "' is scaled to zero",
+                    model.file.string() + ": /nodes/" + std::to_string(*shown.joint_node),
+                    "scales above zero");
+      }
       result.push_back(
           {rig.from_rest[joint].inverse() * world[*shown.joint_node].inverse() * world[shown.node],
            nullptr, joint});
@@ -375,6 +380,9 @@ GltfCharacter make_character(const Model& model, const GltfReadOptions& options)
   gltf::RigData rig;
   if (!selection.skins.empty()) rig = gltf::read_rig(model, selection.skins);
   note_skins(selection, rig, notes);
+  gltf::note_scaled_joints(rig, notes);
+  character.first_skin = selection.first_skin;
+  character.other_skins = selection.other_skins;
   const std::vector<Placement> where = placements(model, selection, rig);
   Builder builder;
   std::vector<Block> blocks;
@@ -382,6 +390,7 @@ GltfCharacter make_character(const Model& model, const GltfReadOptions& options)
     const int first = builder.vertex_count;
     add_node(model, selection.meshes[i].node, where[i], builder, ignored, notes);
     blocks.push_back({selection.meshes[i].node, first, builder.vertex_count - first});
+    character.part_of_vertex.resize(builder.vertex_count, static_cast<int>(i));
   }
   character.mesh = finish_mesh(builder, model.file.string());
   note_doubles(model, character.mesh, blocks, notes);

@@ -24,9 +24,10 @@ struct GltfReadOptions {
 /// mean of its children's heads; a leaf has none. The parent of a joint is its nearest ancestor
 /// that is a joint of the skeleton.
 ///
-/// Several skins share a skeleton when they have joints in common, or joints below one another; a
+/// Several skins share a skeleton when they have joints in common, or joints below a common node; a
 /// mesh without skin that hangs on a joint is held to it with weight 1. What else there is, is left
-/// out and named in the warnings (selection.h).
+/// out and named in the warnings (selection.h), of meshes with another skeleton also in
+/// `other_skins`.
 ///
 /// @throws Error  naming the file and the place in it: anything that is not valid, and a file
 ///                without triangles

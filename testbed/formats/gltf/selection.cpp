@@ -100,8 +100,18 @@ std::vector<std::size_t> candidates(const Model& model, const std::optional<std:
   return shown;
 }
 
-/// Which skins belong to one skeleton.
-DisjointSets skeletons(const Model& model) {
+/// The node without parent above each node.
+std::vector<std::size_t> roots_of(const Model& model) {
+  std::vector<std::size_t> roots(model.nodes.size());
+  for (const std::size_t i : model.node_order) {
+    const auto& parent = model.nodes[i].parent;
+    roots[i] = parent ? roots[*parent] : i;
+  }
+  return roots;
+}
+
+/// Which skins share a joint, or have a joint below one of the other.
+DisjointSets related_skins(const Model& model) {
   std::vector<std::vector<int>> skins_of_node(model.nodes.size());
   for (std::size_t s = 0; s < model.skins.size(); ++s) {
     for (const std::size_t joint : model.skins[s].joints)
@@ -116,6 +126,46 @@ DisjointSets skeletons(const Model& model) {
       above[i] = above[i] < 0 ? skin : sets.join(skin, above[i]);
   }
   return sets;
+}
+
+/// Notes skins that are one skeleton by a common node alone: they may be two characters.
+void note_unrelated(const Model& model, const std::vector<std::size_t>& skins,
+                    std::vector<std::string>& notes) {
+  DisjointSets related = related_skins(model);
+  const auto first = static_cast<int>(skins[0]);
+  std::string others;
+  for (const std::size_t skin : skins) {
+    if (related.find(static_cast<int>(skin)) != related.find(first))
+      others += " and " + std::to_string(skin);
+  }
+  if (others.empty()) return;
+  notes.push_back("skins " + std::to_string(first) + others +
+                  " share no joint: they are read as one character, as their joints hang on node "
+                  "'" +
+                  model.nodes[roots_of(model)[model.skins[skins[0]].joints[0]]].name +
+                  "' (mesh = \"…\" reads one)");
+}
+
+/// Which skins belong to one skeleton.
+DisjointSets skeletons(const Model& model) {
+  const std::vector<std::size_t> roots = roots_of(model);
+  DisjointSets sets(static_cast<int>(model.skins.size()));
+  std::vector<int> skin_of_root(model.nodes.size(), -1);
+  for (int s = 0; s < sets.size(); ++s) {
+    for (const std::size_t joint : model.skins[s].joints) {
+      int& known = skin_of_root[roots[joint]];
+      known = known < 0 ? s : sets.join(s, known);
+    }
+  }
+  return sets;
+}
+
+/// "skin 1 'dog' of mesh 'dog'".
+std::string skin_title(const Model& model, std::size_t node) {
+  const std::size_t skin = *model.nodes[node].skin;
+  const std::string& name = model.skins[skin].name;
+  return "skin " + std::to_string(skin) + (name.empty() ? "" : " '" + name + "'") + " of " +
+         mesh_title(model, *model.nodes[node].mesh);
 }
 
 /// Orders skins by their topmost joints.
@@ -165,12 +215,17 @@ void take_meshes(const Model& model, const std::vector<std::size_t>& nodes,
                     std::to_string(skeleton.first_skin) + " (mesh = \"…\" reads one alone)");
   const auto above = joints_above(model, is_joint);
   LeftOut loose("they have no skin and hang on no joint of the skeleton");
+  std::vector<bool> is_named(model.skins.size(), false);
   for (const std::size_t i : nodes) {
     const auto& skin = model.nodes[i].skin;
     if (skin && skeleton.has(*skin)) {
       selection.meshes.push_back({i, skin, std::nullopt});
+      if (*skin == skeleton.first_skin && selection.first_skin.empty())
+        selection.first_skin = skin_title(model, i);
     } else if (skin) {
       strangers.add(model, i);
+      if (!is_named[*skin]) selection.other_skins.push_back(skin_title(model, i));
+      is_named[*skin] = true;
     } else if (above[i]) {
       selection.meshes.push_back({i, std::nullopt, above[i]});
     } else {
@@ -211,6 +266,7 @@ Selection select_meshes(const Model& model, const std::optional<std::string>& me
     for (const std::size_t joint : model.skins[*skin].joints) is_joint[joint] = true;
   }
   sort_by_root(model, selection.skins);
+  note_unrelated(model, selection.skins, selection.notes);
   take_meshes(model, nodes, skeleton, is_joint, selection);
   return selection;
 }

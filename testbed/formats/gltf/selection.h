@@ -22,14 +22,18 @@ struct Selection {
   std::vector<std::size_t>
       skins;  ///< of one skeleton, that of the topmost joint first; may be none
   std::vector<std::string> notes;  ///< what is left out, by name and size
+  /// Of meshes that are left out because their skins are of another skeleton: "skin 1 'dog' of mesh
+  /// 'dog'", one a skin.
+  std::vector<std::string> other_skins;
+  std::string first_skin;  ///< the same of the skin that is read with its skeleton
 };
 
 /// The meshes of the scene that is shown, or those that `mesh` names (a mesh or a node; beyond the
 /// scene where the scene has none of that name). Of skinned ones: those whose skins have joints of
 /// one skeleton with the first, and meshes without skin that hang on a joint of it.
 ///
-/// Skins belong to one skeleton when they share a joint, or when a joint of one stands below a
-/// joint of the other.
+/// Skins belong to one skeleton when they share a joint, or when their joints stand below a common
+/// node of the file: a joint or not, as an armature of several skeletons.
 ///
 /// @throws Error  naming the file when nothing is left, with the names there are
 Selection select_meshes(const Model& model, const std::optional<std::string>& mesh);

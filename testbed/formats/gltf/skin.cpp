@@ -1,9 +1,12 @@
 #include "testbed/formats/gltf/skin.h"
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <set>
+#include <sstream>
 
 #include "core/error.h"
 
@@ -26,13 +29,14 @@ std::vector<Eigen::Affine3d> inverse_bind_matrices(const Model& model, const Ski
     const Eigen::Matrix<double, 16, 1> row = values.row(i).transpose();
     const Eigen::Map<const Eigen::Matrix4d> m(row.data());
     const std::string joint = where + ", bind matrix of joint " + std::to_string(i);
-    if (!row.allFinite()) throw Error("not finite", joint);
+    if (!row.allFinite())
+      throw Error("not finite, of node '" + model.nodes[skin.joints[i]].name + "'", joint);
     const Eigen::Matrix3d linear = m.topLeftCorner<3, 3>();
-    // Relative to the size of the entries: units of a file may be anything.
-    const double size = linear.norm();
-    if (!(std::abs(linear.determinant()) > 1e-9 * size * size * size))
-      throw Error("singular (determinant " + std::to_string(linear.determinant()) + ")", joint,
-                  "an invertible matrix");
+    if (is_flat(linear)) {
+      throw Error("singular (determinant " + std::to_string(linear.determinant()) + "), of node '" +
+                      model.nodes[skin.joints[i]].name + "'",
+                  joint, "an invertible matrix");
+    }
     if ((m.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > 1e-4)
       throw Error("not affine", joint, "last row 0 0 0 1");
     result[i].linear() = linear;
@@ -137,9 +141,7 @@ bool is_one_pose(const SkinBinding& skin, const std::vector<int>& joints,
 
 void require_extent(const Eigen::Affine3d& to_rest, const std::string& joint,
                     const std::string& where) {
-  const double size = to_rest.linear().norm();
-  if (!to_rest.matrix().allFinite() ||
-      !(std::abs(to_rest.linear().determinant()) > 1e-9 * size * size * size)) {
+  if (!to_rest.matrix().allFinite() || is_flat(to_rest.linear())) {
     throw Error("the root joint '" + joint + "' flattens the mesh", where,
                 "transforms that can be inverted");
   }
@@ -224,6 +226,35 @@ std::vector<Eigen::Affine3d> world_transforms(const Model& model) {
     }
   }
   return world;
+}
+
+bool is_flat(const Eigen::Matrix3d& linear) {
+  // Relative to the size of the entries: units of a file may be anything.
+  const double size = linear.norm();
+  return !(std::abs(linear.determinant()) > 1e-9 * size * size * size);
+}
+
+void note_scaled_joints(const RigData& rig, std::vector<std::string>& notes) {
+  constexpr double kUniform = 1e-3;
+  int count = 0, most = 0;
+  double largest = 1;
+  for (int j = 0; j < rig.skeleton.size(); ++j) {
+    const Eigen::Vector3d scales =
+        Eigen::JacobiSVD<Eigen::Matrix3d>(rig.from_rest[j].linear()).singularValues();
+    const double ratio = scales[0] / scales[2];
+    if (!(ratio > 1 + kUniform)) continue;
+    ++count;
+    if (ratio > largest) most = j;
+    largest = std::max(largest, ratio);
+  }
+  if (count == 0) return;
+  std::ostringstream text;
+  text << (count == 1 ? "1 joint is" : std::to_string(count) + " joints are")
+       << " bound with a scale that differs by direction, '" << rig.skeleton.joints[most].name
+       << "' by a factor of " << std::setprecision(4) << largest
+       << ": a clip that turns what hangs on it shears the skin, which not every method follows; "
+          "apply the scale in the program that wrote the file";
+  notes.push_back(text.str());
 }
 
 RigData read_rig(const Model& model, const std::vector<std::size_t>& skins) {

@@ -31,6 +31,14 @@ struct RigData {
 /// @throws Error  naming the joint of a singular or non-finite bind matrix
 RigData read_rig(const Model& model, const std::vector<std::size_t>& skins);
 
+/// Whether a linear map takes space to a plane, a line or a point, or has entries that are not
+/// finite; whatever its unit.
+bool is_flat(const Eigen::Matrix3d& linear);
+
+/// Notes joints that are bound with a scale that differs by direction, the one that differs most by
+/// name: what turns on them is sheared.
+void note_scaled_joints(const RigData& rig, std::vector<std::string>& notes);
+
 /// Adds the influences of a primitive's vertices as (vertex + first_vertex, joint, weight), each
 /// vertex summing to 1.
 /// @throws Error  naming the vertex: weights that sum to zero, negative or not finite, joints out
