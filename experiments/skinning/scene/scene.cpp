@@ -95,7 +95,8 @@ std::map<std::string, double> SkinningScene::facts() const {
           {"influences",
            static_cast<double>(rig.weights.nonZeros()) / std::max(1, rig.mesh.vertex_count())},
           {"boundary_edges", static_cast<double>(boundary_edges(rig.mesh.F).size())},
-          {"regions", static_cast<double>(regions.size())}};
+          {"regions", static_cast<double>(regions.size())},
+          {"unit_m", unit_m}};
 }
 
 const Pose& SkinningScene::pose_at(double parameter) const {
@@ -121,6 +122,7 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   scene->frame_pose = std::move(motion.poses);
   scene->parameter_label = std::move(motion.parameter_name);
   scene->parameter_unit_label = std::move(motion.parameter_unit);
+  scene->unit_m = character.unit_m;
   scene->input_files = std::move(character.files);
   scene->input_files.insert(scene->input_files.end(), motion.files.begin(), motion.files.end());
   scene->load_warnings = std::move(character.warnings);

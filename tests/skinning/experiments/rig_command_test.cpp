@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "experiments/skinning/scene/axis_guess.h"
+#include "experiments/skinning/scene/guess/axes.h"
 #include "experiments/skinning/scene/characters.h"
 #include "testbed/formats/gltf/reader.h"
 #include "tests/testbed/run_fixture.h"
