@@ -20,10 +20,11 @@ constexpr double kAgree = 25;        ///< degrees between such a bend and the st
 constexpr double kContradicts = 45;  ///< degrees between them that leave a doubt
 constexpr double kSlightBend = 8;    ///< degrees; less is no sign of another side
 constexpr double kForward = 0.95;    ///< cosine; a bone that points so far forward turns up
-constexpr double kStub = 0.1;        ///< reach of a limb, over the body's size
-constexpr double kHandReach = 0.2;   ///< of a hand, over the body's size
-constexpr double kSnap = 10;         ///< degrees between a guess and an axis of the joint's own
-constexpr double kAlongBone = 0.9;   ///< cosine; about such an axis a bone twists
+constexpr double kKneeHighest = 0.25, kKneeLowest = 0.85;  ///< of a knee, down the leg
+constexpr double kStub = 0.1;       ///< reach of a limb, over the body's size
+constexpr double kHandReach = 0.2;  ///< of a hand, over the body's size
+constexpr double kSnap = 10;        ///< degrees between a guess and an axis of the joint's own
+constexpr double kAlongBone = 0.9;  ///< cosine; about such an axis a bone twists
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
@@ -105,7 +106,7 @@ class Rig {
       bent.doubt = std::move(straight.doubt);
       return bent;
     }
-    if (contradicts && angle > kSlightBend) {
+    if (contradicts && angle > kSlightBend && !hand_[joint]) {
       straight.axis.reason += ", though it is " + words;
       straight.doubt = "bent to another side at rest";
     }
@@ -224,7 +225,7 @@ class Rig {
   /// Where a straight bone turns to.
   [[nodiscard]] std::pair<Vector3d, std::string> goal(int joint) const {
     const bool hangs = body_.up.dot(bone_[joint]) < -0.7;
-    if (hangs && reaches_ground(joint) && is_below_hip(joint)) {
+    if (hangs && reaches_ground(joint) && is_at_knee(joint)) {
       return {-body_.front, "backward, as a knee"};
     }
     if (body_.front.dot(bone_[joint]) > kForward) return {body_.up, "up"};
@@ -235,13 +236,14 @@ class Rig {
     return body_.is_symmetric && lowest_[joint] <= body_.lowest + Body::kFoot * body_.height;
   }
 
-  /// Whether an ancestor of the same limb hangs as well.
-  [[nodiscard]] bool is_below_hip(int joint) const {
-    for (int p = joints()[joint].parent; p >= 0 && !body_.in_plane(joints()[p].head);
-         p = joints()[p].parent) {
-      if (body_.up.dot(bone_[p]) < -0.7) return true;
-    }
-    return false;
+  /// Whether a joint of a leg is as far down as a knee: not where links of a hip follow one
+  /// another, and above the ankle.
+  [[nodiscard]] bool is_at_knee(int joint) const {
+    if (limb_[joint] < 0) return false;
+    const double top = body_.up.dot(joints()[limb_[joint]].head);
+    const double down = top - body_.up.dot(joints()[joint].head);
+    const double share = down / (top - lowest_[limb_[joint]]);
+    return share > kKneeHighest && share < kKneeLowest;
   }
 
   const Skeleton& skeleton_;

@@ -30,7 +30,8 @@ struct JointAxes {
 ///
 ///     a joint in the plane of symmetry   up x front: the trunk bends forward
 ///     a straight limb                    d x t: the bone turns towards t, forward for hips and
-///                                        arms, backward below the hip, up where it points forward
+///                                        arms, backward for knees (a quarter to 0.85 down the
+///                                        leg), up where it points forward
 ///     a hand and its fingers, toes       the line of the knuckles: closes to the palm's side, down
 ///                                        when stretched out, inwards when hanging; without a body
 ///                                        to the side that the fingers are bent to

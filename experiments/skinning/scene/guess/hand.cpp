@@ -23,18 +23,24 @@ Vector3d pointing(const Skeleton& skeleton, int hand, const std::vector<int>& ch
   return (skeleton.joints[chain.back()].head - skeleton.joints[hand].head).stableNormalized();
 }
 
-/// Unit mean of where the chains point; zero where they are none of a hand's.
+/// Unit mean of where the chains point but for one of them, a thumb's; zero where they are none of
+/// a hand's.
 Vector3d common_direction(const Skeleton& skeleton, int hand, const Chains& chains) {
-  Vector3d mean = Vector3d::Zero();
-  for (const auto& chain : chains) mean += pointing(skeleton, hand, chain);
-  mean = mean.stableNormalized();
-  int aside = 0;
+  Vector3d sum = Vector3d::Zero();
+  for (const auto& chain : chains) sum += pointing(skeleton, hand, chain);
+  Vector3d aside = pointing(skeleton, hand, chains[0]);
+  for (const auto& chain : chains) {
+    const Vector3d finger = pointing(skeleton, hand, chain);
+    if (sum.dot(finger) < sum.dot(aside)) aside = finger;
+  }
+  const Vector3d mean = (sum - aside).stableNormalized();
+  int spread = 0;
   for (const auto& chain : chains) {
     const double cosine = mean.dot(pointing(skeleton, hand, chain));
     if (cosine < 0) return Vector3d::Zero();
-    aside += cosine < kTogether;
+    spread += cosine < kTogether;
   }
-  return aside <= 1 ? mean : Vector3d::Zero();
+  return spread <= 1 ? mean : Vector3d::Zero();
 }
 
 /// The direction in which the first joints of fingers lie side by side; zero where they lie behind
