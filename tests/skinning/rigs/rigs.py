@@ -75,13 +75,8 @@ def soft_weights(vertices, bones):
 
 
 def skin(name, bones, cell, on=None):
-    """The closed skin of bones, with weights on the bones of the whole rig. Where two sheets share an edge of the grid the
-    net has edges of four triangles: a slightly finer grid has them elsewhere, or not."""
-    for _ in range(20):
-        vertices, triangles = tubes(bones, cell)
-        if not open_edges(triangles):
-            break
-        cell *= 0.98
+    """The closed skin of bones, with weights on the bones of the whole rig."""
+    vertices, triangles = tubes(bones, cell)
     assert not open_edges(triangles) and volume(vertices, triangles) > 0, f"the skin '{name}' is not closed"
     on = on or bones
     weights = np.zeros((len(vertices), len(on)))

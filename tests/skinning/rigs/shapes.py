@@ -28,15 +28,35 @@ def gradient(points, bones, step):
                      for e in np.eye(3)], axis=1)
 
 
+def without_pinches(inside):
+    """Fills squares and cubes of the grid of which only opposite corners are inside (or outside): two sheets of the net
+    would share an edge or a vertex there."""
+    inside, pinched = inside.copy(), True
+    while pinched:
+        pinched = False
+        for size in ((1, 1, 0), (1, 0, 1), (0, 1, 1), (1, 1, 1)):
+            corners = list(itertools.product(*[range(d + 1) for d in size]))
+            views = [inside[tuple(slice(c, n - d + c) for c, d, n in zip(corner, size, inside.shape))] for corner in corners]
+            for i in range(len(corners) // 2):
+                pair = (i, len(corners) - 1 - i)
+                first, last = views[pair[0]], views[pair[1]]
+                others = np.stack([view for k, view in enumerate(views) if k not in pair])
+                bad = (first & last & ~others.any(axis=0)) | (~first & ~last & others.all(axis=0))
+                pinched |= bool(bad.any())
+                for view in views:
+                    view |= bad
+    return inside
+
+
 def tubes(bones, cell):
-    """Vertices and outward triangles of the union of the bones' tubes by surface nets [Gibson 1998] on a grid of such cells,
+    """Vertices and outward triangles of the union of the bones' tubes by a surface net on a grid of such cells,
     moved onto the surface."""
     radius = max(max(bone.radii) for bone in bones) + 2 * cell
     ends = np.array([end for bone in bones for end in (bone.head, bone.tail)])
     low = ends.min(axis=0) - radius
     counts = np.ceil((ends.max(axis=0) + radius - low) / cell).astype(int) + 1
     nodes = np.stack(np.meshgrid(*[np.arange(n) for n in counts], indexing="ij"), axis=-1)
-    inside = tube_field((low + cell * nodes).reshape(-1, 3), bones).reshape(counts) < 0
+    inside = without_pinches(tube_field((low + cell * nodes).reshape(-1, 3), bones).reshape(counts) < 0)
     corners = np.stack([inside[tuple(slice(d, n - 1 + d) for d, n in zip(offset, counts))]
                         for offset in itertools.product((0, 1), repeat=3)])
     mixed = corners.any(axis=0) & ~corners.all(axis=0)
