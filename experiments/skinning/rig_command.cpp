@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "experiments/skinning/scene/characters.h"
 #include "experiments/skinning/scene/guess/axes.h"
+#include "experiments/skinning/scene/guess/body.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/options/json.h"
@@ -77,14 +78,26 @@ std::optional<std::string> doubts_line(const std::vector<JointAxes>& axes) {
          " joints is doubtful, as their comments say: " + reasons;
 }
 
+/// "the body stands along +z, not +y"; absent: it stands along +y, or nothing shows how it stands.
+std::optional<std::string> stance_line(const Skeleton& skeleton) {
+  const Body body = find_body(skeleton);
+  if (!body.is_symmetric || body.up_doubt || body.up == Eigen::Vector3d::UnitY())
+    return std::nullopt;
+  int axis = 0;
+  const double up = body.up.cwiseAbs().maxCoeff(&axis) * body.up.sum();
+  return std::string("by its limbs the body stands along ") + (up > 0 ? '+' : '-') + "xyz"[axis] +
+         ", or lies: axes are guessed so, glTF has +y up";
+}
+
 CommandText write_rig(const std::string& input, const RigOptions& options) {
   const std::filesystem::path file = find_input(input, ".");
   CharacterSkeleton own = read_character_skeleton(file, options.mesh, options.unit_m);
   CommandText out;
   out.text = skeleton_file_text(own.skeleton, quoted_name(file.filename().string()));
   out.notices = std::move(own.warnings);
-  if (const auto doubts = doubts_line(guess_axes(own.skeleton)))
-    out.notices.push_back(file.string() + ": " + *doubts);
+  for (const auto& line : {stance_line(own.skeleton), doubts_line(guess_axes(own.skeleton))}) {
+    if (line) out.notices.push_back(file.string() + ": " + *line);
+  }
   return out;
 }
 

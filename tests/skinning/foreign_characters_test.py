@@ -112,6 +112,21 @@ class ForeignCharacters(Foreign):
                 self.assertIn("roughness_p95.max", result["summary"], variant)
 
 
+    def test_a_clip_in_centimetres_is_the_same_motion(self):
+        came = []
+        for unit in (1, 100):
+            rig = rigs.bent_clip(CELL)
+            for bone in rig.bones:
+                bone.head, bone.tail = unit * bone.head, unit * bone.tail
+            rig.parts[0].vertices *= unit
+            file = self.write("bent", rig)
+            scene = f'character = "{file}"\nskeleton = "{self.rig(file)[0]}"\nmotion = {moved(None, 2)}\n'
+            cases, _ = self.run_experiment(experiment(scene, [("linear-blend", "linear-blend", "")]))
+            came.append(cases[0]["variants"][0]["summary"])
+        for metric in ("roughness_p95.max", "lumps_max.max", "volume_change_global.min"):
+            self.assertAlmostEqual(came[1][metric]["value"] / came[0][metric]["value"], 1, delta=1e-3, msg=metric)
+
+
 class ForeignSkeletons(Foreign):
     def joints(self, file):
         skeleton, said = self.rig(file)
@@ -134,6 +149,8 @@ class ForeignSkeletons(Foreign):
             joints, text, said = self.joints(self.write("turned", rig))
             self.assertNotIn("doubtful:", text)
             self.assertNotIn("doubtful", said)
+            is_upright = turn[0] == turn[2] == 0
+            self.assertEqual("by its limbs the body stands along" in said, not is_upright, said)
             x, w = np.array(turn[:3]), turn[3]
             side = (w * w - x @ x) * np.eye(3)[0] + 2 * x * x[0] + 2 * w * np.cross(x, np.eye(3)[0])
             for name, sign in (("spine", 1), ("knee-left", 1), ("hip-right", -1), ("ankle-left", -1)):
