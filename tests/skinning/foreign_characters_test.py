@@ -5,6 +5,7 @@
 The rigs of tests/skinning/rigs are written by a script, each with one trait; two are those of installed packages. With
 GEOPRIOR_LONG skins are finer, and six rigs are measured: their table is printed."""
 import importlib.util
+import itertools
 import json
 import os
 import pathlib
@@ -151,8 +152,7 @@ class ForeignSkeletons(Foreign):
             self.assertNotIn("doubtful", said)
             is_upright = turn[0] == turn[2] == 0
             self.assertEqual("by its limbs the body stands along" in said, not is_upright, said)
-            x, w = np.array(turn[:3]), turn[3]
-            side = (w * w - x @ x) * np.eye(3)[0] + 2 * x * x[0] + 2 * w * np.cross(x, np.eye(3)[0])
+            side = turned(turn, X)
             for name, sign in (("spine", 1), ("knee-left", 1), ("hip-right", -1), ("ankle-left", -1)):
                 self.assertGreater(sign * np.dot(joints[name]["axes"]["flexion"], side), 0.95, f"{name}, {turn}")
 
@@ -175,6 +175,96 @@ class ForeignSkeletons(Foreign):
         _, text, said = self.joints(self.character("flat"))
         self.assertIn("flexion of 19 of 19 joints is doubtful", said)
         self.assertEqual(text.count("# flexion: doubtful: no joint hangs on another but the root"), 19)
+
+
+X = np.array([1.0, 0, 0])
+TRUNK_AND_LEGS = {"spine": X, "neck": X, "hip-left": -X, "hip-right": -X, "knee-left": X, "knee-right": X, "ankle-left": -X}
+DOG = {"spine": X, "head": X, "hip-left": -X, "stifle-left": X, "hock-right": -X, "elbow-left": -X, "carpus-right": X}
+HAND = {"wrist": -X, "ring-0": -X, "middle-1": -X, "index-2": -X, "pinky-3": -X}
+ROBOT = {"waist": X, "hip-left": -X, "thigh-right": -X, "knee-left": X, "shin-right": X, "ankle-left": -X, "foot-right": -X,
+         "elbow-left": np.array([0, -1, 0]), "hand-left": np.array([0, 0, -1]), "finger-1-1-right": np.array([0, 0, 1])}
+
+
+def held(arms):
+    """The body with its arms stretched out along a direction (of the left one)."""
+    bones = {bone.name: bone for bone in rigs.body_bones()}
+    for side, sign in (("left", 1), ("right", -1)):
+        place = np.array([0.18 * sign, 1.38, 0])
+        for joint, length in (("shoulder", 0.3), ("elbow", 0.25), ("hand", 0.1)):
+            bones[f"{joint}-{side}"].head = place
+            place = place + length * np.array(arms) * [sign, 1, 1]
+    return list(bones.values())
+
+
+def left_out(names, bones):
+    return [bone for bone in bones if bone.name.split("-")[0] not in names]
+
+
+def moved_joints(places, bones):
+    """Joints of the left side put elsewhere, those of the right to their mirror images."""
+    for bone in bones:
+        joint, _, side = bone.name.rpartition("-")
+        if joint in places:
+            bone.head = np.array(places[joint]) * [1 if side == "left" else -1, 1, 1]
+    return bones
+
+
+def dog(with_claws, straight):
+    bones = rigs.quadruped_bones()
+    if with_claws:
+        for paw, z in (("paw", 0.34), ("claw", -0.25)):
+            bones += rigs.both_sides([rigs.bone(f"{paw}-end-left", f"{paw}-left", (0.12, 0.03, z), (0.12, 0.03, z), 0.03)])
+    if straight:
+        for bone in bones:
+            joint = bone.name.split("-")[0]
+            bone.head[2] = {"stifle": -0.35, "hock": -0.35, "elbow": 0.25, "carpus": 0.25}.get(joint, bone.head[2])
+    return bones
+
+
+# Skeletons whose front is +z, and what is known of their flexion.
+KNOWN = {
+    "arms aside": (held((1, 0, 0)), TRUNK_AND_LEGS | {"elbow-left": [0, -1, 0], "elbow-right": [0, 1, 0]}),
+    "arms down": (held((0.05, -1, 0)), TRUNK_AND_LEGS | {"elbow-left": -X, "elbow-right": -X}),
+    "arms forward": (held((0, 0, 1)), TRUNK_AND_LEGS | {"elbow-left": -X, "elbow-right": -X}),
+    "arms up": (held((0.2, 1, 0)), TRUNK_AND_LEGS | {"elbow-left": X, "elbow-right": X}),
+    "no feet": (left_out({"toe"}, rigs.body_bones()), TRUNK_AND_LEGS),
+    "bust": (left_out({"hip", "knee", "ankle", "toe"}, held((1, 0, 0))), {"spine": X, "neck": X, "elbow-left": [0, -1, 0]}),
+    "seated": (moved_joints({"knee": (0.12, 0.9, 0.42), "ankle": (0.12, 0.5, 0.4), "toe": (0.12, 0.45, 0.52)},
+                            rigs.body_bones()), TRUNK_AND_LEGS),
+    "one leg": ([b for b in rigs.body_bones() if b.name not in ("hip-right", "knee-right", "ankle-right", "toe-right")],
+                TRUNK_AND_LEGS),
+    "dog": (dog(True, False), DOG), "dog without claws": (dog(False, False), DOG),
+    "dog with straight legs": (dog(True, True), DOG), "hand": (rigs.hand_bones(), HAND), "robot": (rigs.robot_bones(), ROBOT)}
+SHOWS_LITTLE = {"no feet", "bust", "dog with straight legs"}  # where most of what is known has to be doubted
+# +z and -z to the front, on its back, on its face, upside down, and y, z, x where x, y, z were.
+TURNS = ((0, 0, 0, 1), (0, 1, 0, 0), (-(0.5**0.5), 0, 0, 0.5**0.5), (0.5**0.5, 0, 0, 0.5**0.5), (0, 0, 1, 0),
+         (0.5, 0.5, 0.5, 0.5))
+
+
+def turned(turn, x):
+    """By a quaternion x y z w."""
+    axis = np.array(turn[:3])
+    return (turn[3] ** 2 - axis @ axis) * x + 2 * axis * (axis @ x) + 2 * turn[3] * np.cross(axis, x)
+
+
+class GuessedAxes(Foreign):
+    def test_none_is_wrong_and_sure(self):
+        for (name, (bones, known)), turn in itertools.product(KNOWN.items(), TURNS):
+            rig = rigs.stand_in(bones)
+            rig.turn = turn
+            skeleton, _ = self.rig(self.write("known", rig))
+            text = skeleton.read_text()
+            joints = tomllib.loads(text)["joint"]
+            sure = 0
+            for joint in joints.keys() & known.keys():
+                block = text.split(f"[joint.{joint}]")[1].split("[joint.")[0]
+                if "# flexion: doubtful" in block:
+                    continue
+                sure += 1
+                cosine = np.dot(joints[joint]["axes"]["flexion"], turned(turn, np.array(known[joint])))
+                self.assertGreater(cosine, 0.86, f"{name}, turned by {turn}: {joint}{block}")
+            if name not in SHOWS_LITTLE:
+                self.assertGreaterEqual(2 * sure, len(known) - 1, f"{name}, turned by {turn}: doubts most")
 
 
 # Two motions of each: a joint about its guessed (of the human body authored) flexion, or the clip of the file.

@@ -142,9 +142,9 @@ def several_meshes(cell):
     return rig
 
 
-def robot(_):
-    """59 boxes, each on a joint of its own; pelvis, chest, hands and feet have three children or more."""
-    plates = both_sides([
+def robot_bones():
+    """59 links with their widths and depths; pelvis, chest, hands and feet have three children or more."""
+    return both_sides([
         bone("pelvis", None, (0, 0.95, 0), (0, 1.03, 0), 0.24, 0.16),
         bone("waist", "pelvis", (0, 1.05, 0), (0, 1.15, 0), 0.2, 0.14),
         bone("chest", "waist", (0, 1.17, 0), (0, 1.42, 0), 0.3, 0.18),
@@ -172,6 +172,11 @@ def robot(_):
           for k in range(3) for i in range(3)],
         bone("antenna-left", "head", (0.1, 1.66, 0), (0.14, 1.78, 0), 0.02, 0.02),
         bone("ear-left", "head", (0.09, 1.6, 0), (0.13, 1.6, 0), 0.03, 0.03)])
+
+
+def robot(_):
+    """59 boxes, each on a joint of its own."""
+    plates = robot_bones()
     rig = Rig(plates, [])
     vertices, triangles, weights = [], [], []
     for i, plate in enumerate(plates):
@@ -183,9 +188,9 @@ def robot(_):
     return rig
 
 
-def quadruped(cell):
+def quadruped_bones():
     """A dog of 1.1 m, on +y, facing +z, whose legs are bent as such legs are."""
-    bones = both_sides([
+    return both_sides([
         bone("pelvis", None, (0, 0.62, -0.35), (0, 0.64, -0.2), 0.1),
         bone("spine", "pelvis", (0, 0.64, -0.18), (0, 0.63, 0.05), 0.1, 0.12),
         bone("chest", "spine", (0, 0.63, 0.08), (0, 0.64, 0.26), 0.13, 0.11),
@@ -201,6 +206,10 @@ def quadruped(cell):
         bone("stifle-left", "hip-left", (0.12, 0.4, -0.26), (0.12, 0.22, -0.42), 0.05, 0.038),
         bone("hock-left", "stifle-left", (0.12, 0.22, -0.42), (0.12, 0.06, -0.38), 0.034),
         bone("claw-left", "hock-left", (0.12, 0.06, -0.38), (0.12, 0.04, -0.3), 0.038)])
+
+
+def quadruped(cell):
+    bones = quadruped_bones()
     return Rig(bones, [skin("dog", bones, cell)])
 
 
@@ -211,7 +220,7 @@ def bent_clip(cell):
     return rig
 
 
-def hand(cell):
+def hand_bones():
     """A right hand of 20 cm, fingers down, palm forward, slightly closed."""
     bones = [bone("wrist", None, (0, 0.2, 0), (0, 0.14, 0), 0.024, 0.026)]
     for k, (name, length) in enumerate((("index", 0.085), ("middle", 0.095), ("ring", 0.088), ("pinky", 0.07))):
@@ -225,6 +234,11 @@ def hand(cell):
     bones.append(bone("thumb-0", "wrist", (-0.025, 0.165, 0.008), (-0.052, 0.14, 0.02), 0.013, 0.012))
     bones.append(bone("thumb-1", "thumb-0", (-0.052, 0.14, 0.02), (-0.07, 0.112, 0.028), 0.011, 0.01))
     bones.append(bone("thumb-2", "thumb-1", (-0.07, 0.112, 0.028), (-0.08, 0.09, 0.034), 0.01, 0.009))
+    return bones
+
+
+def hand(cell):
+    bones = hand_bones()
     return Rig(bones, [skin("hand", bones, 0.12 * cell)])
 
 
@@ -234,6 +248,13 @@ def flat(cell):
     for one in rig.bones:
         one.parent = None
     return rig
+
+
+def stand_in(bones):
+    """A triangle at each joint: enough for a skeleton."""
+    corners = np.concatenate([b.head + 0.01 * np.eye(3) for b in bones])
+    weights = np.repeat(np.eye(len(bones)), 3, axis=0)
+    return Rig(bones, [Part("stand-in", corners, np.arange(len(corners)).reshape(-1, 3), weights)])
 
 
 ALL = {"open-loop": open_loop, "centimetres": centimetres, "several-meshes": several_meshes, "robot": robot,

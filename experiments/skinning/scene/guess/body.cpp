@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kReach = 0.25;       ///< of all limbs downwards, over the size; less shows no up
 constexpr double kUpright = 0.87;     ///< cosine of 30 degrees between limbs or trunk and an axis
+constexpr double kAlongTrunk = 0.5;   ///< cosine between what limbs and trunk show of up
 constexpr double kFootLength = 0.04;  ///< of all feet forward, over the height; less shows no front
 
 /// The middle coordinate: of a body's joints that of its trunk, wherever the hands are.
@@ -111,10 +112,14 @@ void find_up(const Skeleton& skeleton, int sides, Body& body) {
   for (const Vector3d& limb : limb_vectors(skeleton, roots)) down += limb;
   down[sides] = 0;
   body.up = sides == 1 ? Vector3d::UnitZ() : Vector3d::UnitY();
-  const auto found = near_axis(-down, sides);
-  if (found && down.norm() >= kReach * body.size) {
-    body.up = *found;
-  } else if (near_axis(trunk(skeleton, roots), sides) != body.up) {
+  const bool reaches_down = down.norm() >= kReach * body.size;
+  const auto by_limbs = near_axis(-down, sides);
+  const auto by_trunk = near_axis(trunk(skeleton, roots), sides);
+  if (reaches_down && by_limbs) {
+    body.up = *by_limbs;
+  } else if (reaches_down && by_trunk && -down.dot(*by_trunk) > kAlongTrunk * down.norm()) {
+    body.up = *by_trunk;  // of one that sits, or stretches its arms forward
+  } else if (by_trunk != body.up) {
     body.up_doubt = "no legs show which way is up";
   }
 }

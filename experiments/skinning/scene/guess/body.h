@@ -12,9 +12,10 @@ namespace geoprior::skinning {
 ///
 /// Its sides are those of x, z or y across which most joints have a mirror image (a third of those
 /// off the plane, and two pairs, or it has none). Limbs are what hangs on the plane beside it: they
-/// reach down, which of a standing body in any pose its legs decide, of a lying one as well. Its
-/// front is where the lowest bones (feet) point. What the joints do not show is taken as glTF has
-/// it, up +y and front +z, and is a doubt.
+/// reach down, which of a standing body in any pose its legs decide, of a lying one as well; where
+/// they reach aside too (of one that sits), the trunk decides. Its front is where the lowest bones
+/// (feet) point. What the joints do not show is taken as glTF has it, up +y and front +z, and is a
+/// doubt.
 ///
 /// What it misjudges: a body on its hands, and one whose heels are longer than its feet.
 struct Body {
