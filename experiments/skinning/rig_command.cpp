@@ -1,10 +1,12 @@
 #include "experiments/skinning/rig_command.h"
 
 #include <cmath>
+#include <map>
 
 #include "core/error.h"
-#include "experiments/skinning/scene/axis_guess.h"
 #include "experiments/skinning/scene/characters.h"
+#include "experiments/skinning/scene/guess/axes.h"
+#include "experiments/skinning/scene/guess/body.h"
 #include "testbed/runner/names.h"
 #include "testbed/runner/number_text.h"
 #include "testbed/runner/options/json.h"
@@ -38,7 +40,8 @@ std::string joint_text(const Skeleton& skeleton, const Joint& joint, const Joint
   text += "head = " + head + "\n";
   const std::string tail = joint.tail ? vector_text(*joint.tail, kDigits) : head;
   if (tail != head) text += "tail = " + tail + "\n";
-  text += "# flexion: " + axes.flexion.reason + "\n";
+  const std::string doubt = axes.doubt ? "doubtful: " + *axes.doubt + "; " : "";
+  text += "# flexion: " + doubt + axes.flexion.reason + "\n";
   text += axes_line(axes.flexion.direction, axes.twist) + "\n";
   for (const GuessedAxis& other : axes.alternatives)
     text += "# " + axes_line(other.direction, axes.twist) + "  # " + other.reason + "\n";
@@ -48,9 +51,9 @@ std::string joint_text(const Skeleton& skeleton, const Joint& joint, const Joint
 constexpr const char* kPreface = R"(#
 # Metres, in the coordinates of the mesh. An angle turns a joint, with all that hangs on it, about
 # an axis through its head, right-handed. `flexion` and `twist` are names for motions and poses;
-# others can be added. Flexion is a guess from the rest pose: the comment above it says why. Where a
-# picture shows that it is wrong, take a line of a comment instead; where only the side is wrong,
-# turn the signs. Twist is the direction of the bone.
+# others can be added. Flexion is a guess from the rest pose: the comment above it says why, and
+# where it is doubtful. Where a picture shows that it is wrong, take a line of a comment instead;
+# where only the side is wrong, turn the signs. Twist is the direction of the bone.
 #
 # The file helps the character's own rig: joints may be taken out, their weights stay. For motion
 # capture add bvh = "<joint of the .bvh file>" to the joints that it drives.
@@ -58,12 +61,43 @@ constexpr const char* kPreface = R"(#
 #   geoprior describe skeleton
 )";
 
+/// "flexion of 3 of 25 joints is doubtful: a thumb … (2), no feet … (1)"; absent: of none.
+std::optional<std::string> doubts_line(const std::vector<JointAxes>& axes) {
+  std::map<std::string, int> count;
+  int doubtful = 0;
+  for (const JointAxes& joint : axes) {
+    if (!joint.doubt) continue;
+    ++doubtful;
+    ++count[*joint.doubt];
+  }
+  if (doubtful == 0) return std::nullopt;
+  std::string reasons;
+  for (const auto& [reason, joints] : count)
+    reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(joints) + ")";
+  return "flexion of " + std::to_string(doubtful) + " of " + std::to_string(axes.size()) +
+         " joints is doubtful, as their comments say: " + reasons;
+}
+
+/// "the body stands along +z, not +y"; absent: it stands along +y, or nothing shows how it stands.
+std::optional<std::string> stance_line(const Skeleton& skeleton) {
+  const Body body = find_body(skeleton);
+  if (!body.is_symmetric || body.up_doubt || body.up == Eigen::Vector3d::UnitY())
+    return std::nullopt;
+  int axis = 0;
+  const double up = body.up.cwiseAbs().maxCoeff(&axis) * body.up.sum();
+  return std::string("by its limbs the body stands along ") + (up > 0 ? '+' : '-') + "xyz"[axis] +
+         ", or lies: axes are guessed so, glTF has +y up";
+}
+
 CommandText write_rig(const std::string& input, const RigOptions& options) {
   const std::filesystem::path file = find_input(input, ".");
   CharacterSkeleton own = read_character_skeleton(file, options.mesh, options.unit_m);
   CommandText out;
   out.text = skeleton_file_text(own.skeleton, quoted_name(file.filename().string()));
   out.notices = std::move(own.warnings);
+  for (const auto& line : {stance_line(own.skeleton), doubts_line(guess_axes(own.skeleton))}) {
+    if (line) out.notices.push_back(file.string() + ": " + *line);
+  }
   return out;
 }
 
@@ -72,7 +106,7 @@ CommandText write_rig(const std::string& input, const RigOptions& options) {
 void describe(OptionVisitor& v, RigOptions& options) {
   v.value("mesh", options.mesh, {.doc = "name of the file's mesh, as in [scene]"});
   v.value("unit_m", options.unit_m,
-          {.doc = "metres for one unit of the file, as in [scene]",
+          {.doc = "metres for one unit of the file, as in [scene]; absent: guessed",
            .unit = "m",
            .min = 1e-9,
            .max = 1e9});

@@ -12,7 +12,7 @@ namespace geoprior::skinning {
 
 struct RigOptions {
   std::optional<std::string> mesh;
-  double unit_m = 1;
+  std::optional<double> unit_m;
 };
 void describe(OptionVisitor& v, RigOptions& options);
 

@@ -13,6 +13,7 @@
 #include "core/geometry/topology.h"
 #include "core/limits.h"
 #include "core/mesh.h"
+#include "experiments/skinning/scene/guess/unit.h"
 #include "experiments/skinning/scene/skeleton_size.h"
 #include "metrics/contact/joint_region.h"
 #include "testbed/formats/mesh/parsed_mesh.h"
@@ -243,6 +244,14 @@ void require_one_skeleton(const GltfCharacter& character, const fs::path& file) 
               file.string(), "mesh = \"…\", the name of one of these meshes, or one root for all");
 }
 
+/// The metres of a unit of the file; what is guessed of it is a warning.
+double take_unit(const std::optional<double>& given, const GltfCharacter& gltf,
+                 const fs::path& file, std::vector<std::string>& warnings) {
+  const ChosenUnit unit = choose_unit(given, gltf);
+  if (unit.warning) warnings.push_back(file.string() + ": " + *unit.warning);
+  return unit.metres;
+}
+
 GltfCharacter read_character_file(const fs::path& file, const std::optional<std::string>& mesh) {
   const std::string extension = lower(file.extension().string());
   if (extension == ".glb" || extension == ".gltf") {
@@ -260,9 +269,9 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   GltfCharacter gltf = read_character_file(file, options.mesh);
   character.files = gltf.files;
   character.warnings = gltf.warnings;
-  character.unit_m = options.unit_m;
+  character.unit_m = take_unit(options.unit_m, gltf, file, character.warnings);
   TriMesh split = gltf.mesh;
-  split.V *= options.unit_m;
+  split.V *= character.unit_m;
   Weld weld;
   take_mesh(std::move(split), gltf.part_of_vertex, character, weld);
   std::vector<std::string> left_out;
@@ -278,7 +287,7 @@ void load_file(const CharacterOptions& options, const fs::path& file, const fs::
   }
   std::optional<SkinWeights> given;
   if (gltf.skeleton) {
-    scale_to_metres(*gltf.skeleton, options.unit_m);
+    scale_to_metres(*gltf.skeleton, character.unit_m);
     std::string warning;
     given = weld_weights(gltf.weights, weld, warning);
     if (!warning.empty()) character.warnings.push_back(file.string() + ": " + warning);
@@ -426,11 +435,12 @@ Character load_character(const CharacterOptions& options, const fs::path& folder
 }
 
 CharacterSkeleton read_character_skeleton(const fs::path& file,
-                                          const std::optional<std::string>& mesh, double unit_m) {
+                                          const std::optional<std::string>& mesh,
+                                          const std::optional<double>& unit_m) {
   GltfCharacter gltf = read_character_file(file, mesh);
   if (!gltf.skeleton)
     throw Error("no skin: the file has no skeleton", file.string(), "a skinned file");
-  scale_to_metres(*gltf.skeleton, unit_m);
+  scale_to_metres(*gltf.skeleton, take_unit(unit_m, gltf, file, gltf.warnings));
   return {std::move(*gltf.skeleton), std::move(gltf.warnings)};
 }
 
@@ -478,8 +488,13 @@ void describe(OptionVisitor& v, CharacterOptions& options) {
               "one skeleton, of one skin or several; without a skeleton all"});
   v.value("skeleton", options.skeleton,
           {.doc = "skeleton file that overrides the file's hierarchy", .named = Named::file});
-  v.value("unit_m", options.unit_m,
-          {.doc = "metres for one unit of the file", .unit = "m", .min = 1e-9, .max = 1e9});
+  v.value(
+      "unit_m", options.unit_m,
+      {.doc = "metres for one unit of the file; absent: guessed from the size of the character, "
+              "with a warning where it is not 1",
+       .unit = "m",
+       .min = 1e-9,
+       .max = 1e9});
   describe_choice(v, "holes", options.holes, kHoles,
                   {.doc = "what becomes of holes of the skin: closed by caps on the vertices of "
                           "their borders, for weights, methods and metrics but not in what is "

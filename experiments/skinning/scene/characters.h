@@ -31,7 +31,7 @@ struct CharacterOptions {
   std::string character = "human";
   std::optional<std::string> mesh;
   std::optional<std::string> skeleton;
-  double unit_m = 1;
+  std::optional<double> unit_m;  ///< absent: guessed (guess/unit.h)
   Holes holes = Holes::cap;
   WeightSource weights = WeightSource::file_or_heat;
   HeatWeightsOptions heat;
@@ -71,7 +71,8 @@ struct CharacterSkeleton {
 
 /// @throws Error  naming the file: no glTF, no skin
 CharacterSkeleton read_character_skeleton(const std::filesystem::path& file,
-                                          const std::optional<std::string>& mesh, double unit_m);
+                                          const std::optional<std::string>& mesh,
+                                          const std::optional<double>& unit_m);
 
 /// A file named in an experiment: absolute, or relative to `folder`, to experiments/skinning, to
 /// data/ or to the models of Debian's assimp-testmodels.

@@ -56,20 +56,31 @@ std::vector<std::vector<Hinge>> group_neighbours(const std::vector<Hinge>& hinge
   return groups;
 }
 
+JointRegion make_region(const RiggedMesh& rig, const std::vector<Hinge>& group, double extent) {
+  std::string name;
+  std::vector<int> joints;
+  std::vector<Eigen::Vector3d> axes;
+  for (const Hinge& h : group) {
+    name += (name.empty() ? "" : "+") + rig.skeleton.joints[h.joint].name;
+    joints.push_back(h.joint);
+    axes.push_back(h.axis);
+  }
+  return make_joint_region(rig, name, joints, axes, extent);
+}
+
+/// A joint that turns and has no skin about it (a link of a machine) is measured by the whole body
+/// alone, with a warning; a region that was asked for has to be there.
 std::vector<JointRegion> make_regions(const SkinningSceneOptions& options, const RiggedMesh& rig,
-                                      const Motion& motion) {
+                                      const Motion& motion, std::vector<std::string>& warnings) {
   std::vector<JointRegion> regions;
   const auto hinges = hinges_of(options, rig.skeleton, motion);
   for (const std::vector<Hinge>& group : group_neighbours(hinges, rig.skeleton)) {
-    std::string name;
-    std::vector<int> joints;
-    std::vector<Eigen::Vector3d> axes;
-    for (const Hinge& h : group) {
-      name += (name.empty() ? "" : "+") + rig.skeleton.joints[h.joint].name;
-      joints.push_back(h.joint);
-      axes.push_back(h.axis);
+    try {
+      regions.push_back(make_region(rig, group, options.region_extent));
+    } catch (const Error& e) {
+      if (!options.regions.empty()) throw;
+      warnings.push_back(std::string(e.what()) + ": no region of it is measured");
     }
-    regions.push_back(make_joint_region(rig, name, joints, axes, options.region_extent));
   }
   return regions;
 }
@@ -96,7 +107,8 @@ std::map<std::string, double> SkinningScene::facts() const {
            static_cast<double>(rig.weights.nonZeros()) / std::max(1, rig.mesh.vertex_count())},
           {"cap_triangles", cap_triangles},
           {"boundary_edges", static_cast<double>(boundary_edges(rig.mesh.F).size())},
-          {"regions", static_cast<double>(regions.size())}};
+          {"regions", static_cast<double>(regions.size())},
+          {"unit_m", unit_m}};
 }
 
 const Pose& SkinningScene::pose_at(double parameter) const {
@@ -113,7 +125,7 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   auto scene = std::make_shared<SkinningScene>();
   Character character = load_character(options.character, folder);
   Motion motion = make_motion(options.motion, character, folder);
-  scene->regions = make_regions(options, character.rig, motion);
+  scene->regions = make_regions(options, character.rig, motion, character.warnings);
   scene->bending_view = bending_camera(character.rig, motion, scene->regions);
   scene->rig = std::move(character.rig);
   scene->cap_triangles = character.cap_triangles;
@@ -123,6 +135,7 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   scene->frame_pose = std::move(motion.poses);
   scene->parameter_label = std::move(motion.parameter_name);
   scene->parameter_unit_label = std::move(motion.parameter_unit);
+  scene->unit_m = character.unit_m;
   scene->input_files = std::move(character.files);
   scene->input_files.insert(scene->input_files.end(), motion.files.begin(), motion.files.end());
   scene->load_warnings = std::move(character.warnings);

@@ -38,6 +38,7 @@ class SkinningScene final : public Scene {
       regions;  ///< of the joints the motion turns; the first is the one metrics report
   std::string parameter_label = "angle";
   std::string parameter_unit_label = "deg";
+  double unit_m = 1;  ///< metres that were taken for a unit of the character's file
   std::vector<std::filesystem::path> input_files;
   std::vector<std::string> load_warnings;
   std::optional<Camera> bending_view;
