@@ -157,7 +157,8 @@ std::vector<MethodEntry> methods() {
             return std::make_unique<SkinningMethod<DirectDeltaMush>>(scene, options);
           }),
       method_entry<S, ImplicitOptions>(
-          "implicit", false, "dual quaternions, then projection onto a field of blended bones",
+          "implicit", false,
+          "blended joints, then contact, sections and volume from fields of the bones",
           "thesis 3.1; Vaillant et al. 2013",
           [](const S& scene, const ImplicitOptions& options, RunContext& context) {
             require_solid(scene, "implicit skinning");

@@ -36,9 +36,6 @@ MOTIONS = {
     "robot": ("knee-left", 80), "quadruped": ("stifle-left", 40), "bent-clip": None, "hand": ("index-2", 70),
     "flat": ("elbow-left", 60), "bcn_epileptic.glb": None, "animation_with_skeleton.glb": None}
 
-# Implicit skinning may refuse these, with a reason; whatever else is refused fails the test.
-MAY_REFUSE = set()
-
 
 def program(*arguments):
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
@@ -108,9 +105,8 @@ class ForeignCharacters(Foreign):
         came = {variant["name"]: variant for variant in cases[0]["variants"]}
         self.assertEqual(set(came), {variant[0] for variant in variants})
         for variant, result in came.items():
-            if (name, variant) not in MAY_REFUSE:
-                self.assertEqual((result["status"], result["frames"]), ("done", 2), f"{variant}: {said}")
-                self.assertIn("roughness_p95.max", result["summary"], variant)
+            self.assertEqual((result["status"], result["frames"]), ("done", 2), f"{variant}: {said}")
+            self.assertIn("roughness_p95.max", result["summary"], variant)
 
 
     def test_a_clip_in_centimetres_is_the_same_motion(self):

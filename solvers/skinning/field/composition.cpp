@@ -168,11 +168,11 @@ bool FieldComposition::sample_bone(int bone, Float4 p, BoneSample& out) const {
   return true;
 }
 
-FieldComposition::Composed FieldComposition::compose(std::span<const BoneSample> fields) const {
-  Composed result;
+template <class Take>
+void FieldComposition::each_value(std::span<const BoneSample> fields, const Take& take) const {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const BoneSample& child = fields[i];
-    if (child.f > result.value) result = Composed{child.f, child.gradient, child.bone};
+    take(Composed{child.f, child.gradient, child.bone});
     const JointOperator& op = operators_[child.bone];
     const int parent = parent_[child.bone];
     if (parent < 0 || op.is_union()) continue;
@@ -184,15 +184,34 @@ FieldComposition::Composed FieldComposition::compose(std::span<const BoneSample>
       const BlendValue g =
           op(static_cast<double>(child.f), static_cast<double>(up.f),
              static_cast<double>(dot3(child.gradient, up.gradient) / std::sqrt(lengths)));
-      if (static_cast<float>(g.value) > result.value) {
-        result.value = static_cast<float>(g.value);
-        result.gradient = splat(static_cast<float>(g.d1)) * child.gradient +
-                          splat(static_cast<float>(g.d2)) * up.gradient;
-        result.bone = child.f > up.f ? child.bone : up.bone;
-      }
+      take(Composed{static_cast<float>(g.value),
+                    splat(static_cast<float>(g.d1)) * child.gradient +
+                        splat(static_cast<float>(g.d2)) * up.gradient,
+                    child.f > up.f ? child.bone : up.bone});
       break;
     }
   }
+}
+
+FieldComposition::Composed FieldComposition::compose(std::span<const BoneSample> fields) const {
+  Composed result;
+  each_value(fields, [&](const Composed& other) {
+    if (other.value > result.value) result = other;
+  });
+  return result;
+}
+
+FieldComposition::Composed FieldComposition::compose_smoothly(std::span<const BoneSample> fields,
+                                                              float width) const {
+  Composed result = compose(fields);
+  Float4 sum{};
+  float weights = 0;
+  each_value(fields, [&](const Composed& other) {
+    const float weight = smooth_ramp(result.value - width, result.value, other.value);
+    sum += splat(weight) * other.gradient;
+    weights += weight;
+  });
+  if (weights > 0) result.gradient = sum / splat(weights);
   return result;
 }
 

@@ -100,6 +100,9 @@ class FieldComposition {
   };
   /// @param fields  sorted by bone
   [[nodiscard]] Composed compose(std::span<const BoneSample> fields) const;
+  /// The same value with a gradient that does not jump where another bone becomes the largest: the
+  /// mean of all that come within `width` of the value.
+  [[nodiscard]] Composed compose_smoothly(std::span<const BoneSample> fields, float width) const;
 
   /// What a turn of `rotation` against a bone is about that bone's axis.
   [[nodiscard]] AxisTurn turn_to(int bone, Float4 rotation) const;
@@ -129,6 +132,9 @@ class FieldComposition {
   }
 
  private:
+  /// Calls take(Composed) for every bone and every blend with its parent.
+  template <class Take>
+  void each_value(std::span<const BoneSample> fields, const Take& take) const;
   struct PosedBone {
     Float4 to_grid[4];   // columns of the affine map world -> grid coordinates
     Float4 rotation[3];  // columns, rest -> posed

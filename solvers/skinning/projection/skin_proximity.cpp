@@ -10,6 +10,7 @@ constexpr int kMostCells = 64;       // along an axis
 constexpr float kOpposed = 0.4F;     // cosine of two normals up to which they face each other
 constexpr float kCameNearer = 0.5F;  // share of the distance at rest
 constexpr float kRim = 0.3F;         // of these limits, within which certainty falls
+constexpr float kNearness = 0.1F;    // of the reach: vertices this far count a sixteenth
 
 /// 1 well below a limit, 0 at it.
 float below(float x, float limit, float rim) {
@@ -54,8 +55,7 @@ std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& stat
   const Float4 p = (*position_)[slot];
   const Float4 normal = state.outward[slot];
   const float normal2 = dot3(normal, normal);
-  float nearest = reach * reach;
-  std::optional<Facing> found;
+  float weights = 0, depths = 0, unsure = 1;
   int begin[3], end[3];
   for (int k = 0; k < 3; ++k) {
     begin[k] = cell_of(p[k] - reach, k);
@@ -70,22 +70,30 @@ std::optional<SkinProximity::Facing> SkinProximity::facing(const SkinState& stat
         const std::size_t other = slots_[i];
         const Float4 way = (*position_)[other] - p;
         const float distance2 = dot3(way, way);
-        if (distance2 >= nearest) continue;
+        if (distance2 >= reach * reach) continue;
         const Float4 facing = state.outward[other];
-        const float lengths = std::sqrt(normal2 * dot3(facing, facing));
-        if (dot3(normal, facing) > kOpposed * lengths) continue;
+        const float length2 = dot3(facing, facing);
+        const float cosine_limit = kOpposed * std::sqrt(normal2 * length2);
+        const float product = dot3(normal, facing);
+        if (product >= cosine_limit) continue;
         const Float4 at_rest = state.rest[other] - state.rest[slot];
-        if (distance2 > kCameNearer * kCameNearer * dot3(at_rest, at_rest)) continue;
-        nearest = distance2;
-        const float share = std::sqrt(distance2 / dot3(at_rest, at_rest));
-        const float sure = below(dot3(normal, facing) / lengths, kOpposed, kRim) *
-                           below(share, kCameNearer, kRim * kCameNearer) *
-                           below(std::sqrt(distance2), reach, kRim * reach);
-        found = Facing{other, dot3(way, facing) / std::sqrt(dot3(facing, facing)), sure};
+        const float rest2 = dot3(at_rest, at_rest);
+        if (distance2 >= kCameNearer * kCameNearer * rest2) continue;
+        const float distance = std::sqrt(distance2);
+        const float sure = below(product / std::sqrt(normal2 * length2), kOpposed, kRim) *
+                           below(distance / std::sqrt(rest2), kCameNearer, kRim * kCameNearer) *
+                           below(distance, reach, kRim * reach);
+        // The nearest count most, those a few edges farther little.
+        const float nearness = kNearness * reach / (distance + kNearness * reach);
+        const float weight = sure * nearness * nearness * nearness * nearness;
+        weights += weight;
+        depths += weight * dot3(way, facing) / std::sqrt(length2);
+        unsure *= 1 - sure;
       }
     }
   }
-  return found;
+  if (!(weights > 0)) return std::nullopt;
+  return Facing{depths / weights, 1 - unsure};
 }
 
 }  // namespace geoprior::skinning

@@ -17,14 +17,15 @@ class SkinProximity {
   /// @param position  posed, one a slot
   void build(const std::vector<Float4>& position);
 
-  /// What is nearest among the skin that faces a vertex.
+  /// The skin that faces a vertex, as one.
   struct Facing {
-    std::size_t slot;
     float depth;  ///< how far the vertex is behind it (m), negative: in front of it
-    float sure;   ///< that it faces, has come nearer and is within reach: in (0, 1], without jumps
+    float sure;   ///< that there is any: in (0, 1], without jumps
   };
-  /// The nearest vertex within `reach` whose normal opposes that of `slot`, and which is less than
-  /// half as far as at rest: the other side of the own limb has not come nearer.
+  /// Of the vertices within `reach` whose normal opposes that of `slot`, and which are less than
+  /// half as far as at rest (the other side of the own limb has not come nearer): the mean of the
+  /// planes that touch the skin there, each by its nearness and by how surely it faces. No vertex
+  /// comes into it or leaves it abruptly.
   [[nodiscard]] std::optional<Facing> facing(const SkinState& state, std::size_t slot,
                                              float reach) const;
 

@@ -37,6 +37,15 @@ constexpr float kAgrees = 0.8F;
 constexpr float kTurnedAway = -0.5F;
 constexpr float kFacing = 0.0F;
 
+/// Excess over contact along a way, over its length: two depths, each of which grows by little more.
+constexpr float kSteepest = 3;
+
+/// Own depth, in local radii, from which on both sides of a contact yield alike.
+constexpr float kOwnDepth = 0.1F;
+
+/// Fields of bones whose values are no farther apart share the direction of what is asked.
+constexpr float kSameField = 0.05F;
+
 /// How far below contact another bone's field begins to silence the own one, in local radii.
 constexpr float kCrowd = 0.5F;
 
@@ -195,24 +204,32 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
   const Float4 outward = state.outward[slot];
   const float radius = radius_[slot];
   const float band = static_cast<float>(options_.contact_band) * radius;
-  float deepest = -band, facing = 0;
+  // What several bones ask is their mean, each by how surely and how deeply it is met: none of them
+  // takes over abruptly.
+  float weights = 0, excess_sum = 0, facing_sum = 0;
   Float4 direction{};
+  const float inside = smooth_ramp(0, kOwnDepth * radius, at.own.depth);
   for (const BoneSample& other : at.all()) {
     if (other.bone == state.owner[slot]) continue;
     const float excess = excess_of(slot, at, other);
-    if (excess <= -band) continue;
+    if (excess <= -kSteepest * band) continue;
     const float towards = facing_of(other, outward);
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
-    const Float4 way = at.own.depth > 0 ? at.own.inward - other.inward : -other.inward;
+    const Float4 way = splat(inside) * at.own.inward - other.inward;
     const float slope = length3(way);
     if (towards <= 0 || !(slope > 0.05F)) continue;
     const float depth = excess / std::max(slope, length3(other.inward));
-    if (depth <= deepest) continue;
-    deepest = depth;
-    facing = towards;
-    direction = way / splat(slope);
+    const float weight = towards * smooth_ramp(-band, band, depth);
+    if (!(weight > 0)) continue;
+    weights += weight;
+    excess_sum += weight * depth;
+    facing_sum += weight * towards;
+    direction += splat(weight / slope) * way;
   }
-  if (facing <= 0) return {};
+  const float along = length3(direction);
+  if (!(weights > 0) || !(along > 0.05F * weights)) return {};
+  const float deepest = excess_sum / weights, facing = facing_sum / weights;
+  direction /= splat(along);
   // Fields may be fuller than the skin that is there: only what has met is parted.
   const auto met =
       proximity_.facing(state, slot, static_cast<float>(options_.contact_reach) * radius);
@@ -236,7 +253,8 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   std::size_t own_count = 0;
   for (const BoneSample& sample : at.all())
     if (field_.same_part(owner, sample.bone)) own_part[own_count++] = sample;
-  const FieldComposition::Composed all = field_.compose({own_part.data(), own_count});
+  const FieldComposition::Composed all = 
+      field_.compose_smoothly({own_part.data(), own_count}, kSameField);
   const float slope = length3(all.gradient);
   const float outward_length = length3(outward);
   if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
@@ -252,7 +270,8 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   wanted *= wanted * wanted / (wanted * wanted + dead * dead);
   wanted /= std::sqrt(1 + wanted * wanted / (reach * reach));
   wanted *= static_cast<float>(options_.section);
-  if (std::abs(wanted) < kNothing * radius) return {};
+  // Where the skin is right it is asked to stay: whatever was asked, the weight does not jump.
+  if (std::abs(wanted) < kNothing * radius) wanted = 0;
   return {n, wanted, trust_[slot] * known * free * agree};
 }
 
@@ -298,12 +317,9 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
 }
 
 bool SmoothProjection::is_free(std::size_t slot) const {
-  // Two depths, each of which grows with the way by little more than its length.
-  constexpr float kSteepest = 3;
   const float band = static_cast<float>(options_.contact_band) * radius_[slot];
-  const float excess = seen_[slot].excess + band;
-  return seen_[slot].excess < 0 &&
-         excess + kSteepest * length3(moved_[slot] - seen_[slot].moved) < 0;
+  const float way = length3(moved_[slot] - seen_[slot].moved);
+  return seen_[slot].excess < 0 && seen_[slot].excess + kSteepest * (band + way) < 0;
 }
 
 void SmoothProjection::ask(SkinState& state, Stage stage) {

@@ -33,7 +33,14 @@ const RiggedMesh& finger() {
 
 constexpr double kFingerRadius = 0.009;  // at the joint "middle"
 
-ImplicitSkinning make(const RiggedMesh& rig, const ImplicitOptions& options = {}) {
+/// As published.
+ImplicitOptions marching() {
+  ImplicitOptions options;
+  options.projection = ProjectionKind::marching;
+  return options;
+}
+
+ImplicitSkinning make(const RiggedMesh& rig, const ImplicitOptions& options = marching()) {
   RunContext context;
   return {rig, options, context};
 }
@@ -42,7 +49,7 @@ class RestPose : public testing::TestWithParam<int> {};
 
 // Acceptance figure: 1e-6 of the bounding box's diagonal, cached and exact.
 TEST_P(RestPose, ReturnsTheInput) {
-  ImplicitOptions options;
+  ImplicitOptions options = marching();
   options.grid = GetParam();
   ImplicitSkinning skin = make(finger(), options);
   Eigen::MatrixX3d posed;
@@ -127,7 +134,7 @@ TEST(ImplicitSkinning, HalvesOfABentTubeMeetOnThePlaneThatHalvesTheBend) {
 
 // Free vertices stand where the composed field, sampled anew at their places, has their iso-value.
 TEST(ImplicitSkinning, FieldAtThePosedSkinIsThatOfTheRestPoseBesidesContact) {
-  ImplicitOptions options;
+  ImplicitOptions options = marching();
   ImplicitSkinning skin = make(finger(), options);
   Eigen::MatrixX3d posed;
   RunContext context;
@@ -185,7 +192,7 @@ TEST(ImplicitSkinning, HasNoMemoryOfEarlierPoses) {
 }
 
 TEST(ImplicitSkinning, TheReleasedScheduleReachesTheIsoValues) {
-  ImplicitOptions options;
+  ImplicitOptions options = marching();
   options.schedule = Schedule::released_code;
   ImplicitSkinning skin = make(finger(), options);
   Eigen::MatrixX3d posed;
@@ -207,7 +214,7 @@ TEST(ImplicitSkinning, EveryOperatorKeepsVolumeAndBonesOfABentFinger) {
   for (const BlendKind kind :
        {BlendKind::union_max, BlendKind::ricci, BlendKind::gradient_controlled,
         BlendKind::bulge_in_contact, BlendKind::contact}) {
-    ImplicitOptions options;
+    ImplicitOptions options = marching();
     options.blend = kind;
     ImplicitSkinning skin = make(rig, options);
     Eigen::MatrixX3d posed;
@@ -269,7 +276,7 @@ Eigen::MatrixX3d bent_finger(const ImplicitOptions& options) {
 }
 
 TEST(ImplicitSkinning, AJointKeepsWhatItsOwnBlendLeavesOut) {
-  ImplicitOptions options;
+  ImplicitOptions options = marching();
   options.blend = BlendKind::bulge_in_contact;
   options.opening = OpeningPreset::bulge;
   const Eigen::MatrixX3d all = bent_finger(options);
@@ -286,7 +293,7 @@ TEST(ImplicitSkinning, RefusesOpenMeshesAndUnknownJoints) {
   RiggedMesh open = finger();
   open.mesh.F.conservativeResize(open.mesh.F.rows() - 1, 3);
   EXPECT_THROW(make(open), Error);
-  ImplicitOptions options;
+  ImplicitOptions options = marching();
   options.joint_blends.push_back({"no such joint", BlendKind::ricci, OpeningPreset::elbow});
   EXPECT_THROW(make(finger(), options), Error);
   ImplicitSkinning skin = make(finger());
@@ -322,6 +329,15 @@ TEST(ImplicitSkinning, AcceptsFlatRigsAndJointsWithoutSkin) {
 ImplicitOptions smooth_projection() {
   ImplicitOptions options;
   options.projection = ProjectionKind::smooth;
+  return options;
+}
+
+/// The smooth correction of a skin that is moved by its weights as they are.
+ImplicitOptions smooth_on(BaseKind base) {
+  ImplicitOptions options = smooth_projection();
+  options.base = base;
+  options.smooth.spread = 0;
+  options.smooth.volume = false;
   return options;
 }
 
@@ -365,7 +381,7 @@ TEST(SmoothProjection, LeavesATwistAlone) {
   Eigen::MatrixX3d smooth, marching, blended;
   RunContext context;
   dual_quaternions.deform(pose, blended);
-  make(flat, smooth_projection()).deform(pose, smooth, context);
+  make(flat, smooth_on(BaseKind::dual_quaternion)).deform(pose, smooth, context);
   make(flat).deform(pose, marching, context);
   EXPECT_LE((smooth - blended).rowwise().norm().maxCoeff(), 0.02 * kTubeRadius);
   EXPECT_GE((marching - blended).rowwise().norm().maxCoeff(), 0.1 * kTubeRadius);
@@ -466,6 +482,8 @@ Eigen::MatrixX3d base_alone(BaseKind base, const Pose& pose) {
     case BaseKind::direct_delta_mush:
       DirectDeltaMush(finger()).deform(pose, posed);
       break;
+    case BaseKind::limbs_and_trunk:
+      break;
   }
   return posed;
 }
@@ -474,9 +492,8 @@ TEST(Base, WithoutEvaluationsIsWhatStays) {
   const Pose pose = bend(finger(), "middle", 90);
   for (const ProjectionKind projection : {ProjectionKind::smooth, ProjectionKind::marching}) {
     for (const BaseKind base : kBases) {
-      ImplicitOptions options;
+      ImplicitOptions options = smooth_on(base);
       options.projection = projection;
-      options.base = base;
       options.smooth.evaluations = options.smooth.contact_evaluations = 0;
       options.max_iterations = 0;
       Eigen::MatrixX3d posed;
@@ -490,9 +507,7 @@ TEST(Base, WithoutEvaluationsIsWhatStays) {
 // Whatever is corrected is at rest at rest, and moves where the bent finger touches itself.
 TEST(Base, StaysAtRestAndIsCorrectedWhereItTouches) {
   for (const BaseKind base : kBases) {
-    ImplicitOptions options = smooth_projection();
-    options.base = base;
-    ImplicitSkinning skin = make(finger(), options);
+    ImplicitSkinning skin = make(finger(), smooth_on(base));
     Eigen::MatrixX3d posed;
     RunContext context;
     skin.deform(rest_pose(finger().skeleton.size()), posed, context);
@@ -506,7 +521,7 @@ TEST(Base, StaysAtRestAndIsCorrectedWhereItTouches) {
 
 // A null: without evaluations there is nothing to follow.
 TEST(SmoothProjection, WithoutEvaluationsIsWhereItStarted) {
-  ImplicitOptions options = smooth_projection();
+  ImplicitOptions options = smooth_on(BaseKind::dual_quaternion);
   options.smooth.evaluations = options.smooth.contact_evaluations = 0;
   Eigen::MatrixX3d posed, blended;
   RunContext context;
