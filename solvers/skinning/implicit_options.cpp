@@ -14,8 +14,8 @@ constexpr std::array<std::string_view, 3> kCapNames{"none", "point", "dome"};
 constexpr std::array<std::string_view, 2> kPartitionNames{"highest-weight", "closest-bone"};
 constexpr std::array<std::string_view, 3> kSupportNames{"quintic", "cubic", "logistic"};
 constexpr std::array<std::string_view, 3> kProjectionNames{"smooth", "tracking", "marching"};
-constexpr std::array<std::string_view, 4> kBaseNames{"limbs-and-trunk", "dual-quaternion", "centers-of-rotation",
-                                                     "direct-delta-mush"};
+constexpr std::array<std::string_view, 4> kBaseNames{"limbs-and-trunk", "dual-quaternion",
+                                                     "centers-of-rotation", "direct-delta-mush"};
 constexpr std::array<std::string_view, 2> kScheduleNames{"paper", "released-code"};
 
 void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
@@ -51,7 +51,8 @@ void describe_fields(OptionVisitor& v, ImplicitOptions& o) {
 }
 
 void describe_solve(OptionVisitor& v, ImplicitOptions& o) {
-  describe_choice(v, "base", o.base, kBaseNames, {.doc = "the skin that is corrected: dual quaternions on limbs and centers of "
+  describe_choice(v, "base", o.base, kBaseNames,
+                  {.doc = "the skin that is corrected: dual quaternions on limbs and centers of "
                           "rotation on the trunk, or one method everywhere; absent: the first, "
                           "dual quaternions for the marching"});
   describe_choice(

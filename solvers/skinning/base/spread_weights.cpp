@@ -9,8 +9,8 @@
 namespace geoprior::skinning {
 namespace {
 
-constexpr int kSteps = 4;             // of the diffusion
-constexpr double kLeastWeight = 1e-4; // that is kept
+constexpr int kSteps = 4;              // of the diffusion
+constexpr double kLeastWeight = 1e-3;  // that is kept
 
 }  // namespace
 

@@ -21,8 +21,8 @@ constexpr double kLargestSwelling = 0.6;
 constexpr int kSharePasses = 8;
 constexpr int kNormalPasses = 20;
 
-/// Skin of the inner side of a joint swells less, by exp(-(kInside x)^2), x the cosine of its normal
-/// and the inside, times the sine of half the turn: it has nowhere to go.
+/// Skin of the inner side of a joint swells less, by exp(-(kInside x)^2), x the cosine of its
+/// normal and the inside, times the sine of half the turn: it has nowhere to go.
 constexpr float kInside = 1;
 
 constexpr float kRigid = 1e-4F;
@@ -106,7 +106,9 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
       weight += m;
       mean += m * static_cast<double>(radius[s]);
       const int owner = state.owner[s];
-      if (owner >= 0 && (partition.bones[owner].joint == flesh.joint || partition.bones[owner].joint == flesh.parent)) mobility[s] += kRigid;
+      if (owner >= 0 && (partition.bones[owner].joint == flesh.joint ||
+                         partition.bones[owner].joint == flesh.parent))
+        mobility[s] += kRigid;
     }
     if (!(weight > 0)) continue;
     const double r = mean / weight;
@@ -132,8 +134,8 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
     bump = smoothed(std::move(bump), state);
     for (std::size_t s = 0; s < state.size(); ++s) {
       if (bump[s] > 1e-4F) {
-        flesh.swellings.push_back({static_cast<int>(s), bump[s],
-                                   static_cast<float>(area(state.vertex[s])), outward[s]});
+        flesh.swellings.push_back(
+            {static_cast<int>(s), bump[s], static_cast<float>(area(state.vertex[s])), outward[s]});
       }
     }
     joints_.push_back(std::move(flesh));

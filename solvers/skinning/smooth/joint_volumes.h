@@ -29,7 +29,8 @@ class JointVolumes {
 
   /// Which joints bend in a pose, and where; nothing is swollen yet.
   /// @param rotations  of the slots: unit quaternions (x, y, z, w)
-  void set_pose(const FieldComposition& field, const Pose& pose, const std::vector<Float4>& rotations);
+  void set_pose(const FieldComposition& field, const Pose& pose,
+                const std::vector<Float4>& rotations);
 
   /// Swells `base` so that the volume of `position` comes back to first order; `position` moves
   /// with it.

@@ -56,8 +56,8 @@ std::vector<float> limb_shares(const RiggedMesh& rig, const BonePartition& parti
     const std::size_t b = state.owner[s];
     const FieldBone& bone = partition.bones[b];
     const double along = segment_parameter(rig.mesh.V.row(state.vertex[s]), bone.head, bone.tail);
-    const double share = static_cast<double>(
-        smooth_ramp(kHeadPart, kTailPart, static_cast<float>(along)));
+    const double share =
+        static_cast<double>(smooth_ramp(kHeadPart, kTailPart, static_cast<float>(along)));
     shares.push_back(static_cast<float>(ends.head[b] + share * (ends.tail[b] - ends.head[b])));
   }
   smooth_values(shares, state, kLimbPasses);

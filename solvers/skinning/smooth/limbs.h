@@ -16,8 +16,8 @@ struct LimbRatios {
   float limb;
 };
 
-/// How far the skin of each slot is that of a limb, in [0, 1]. A joint is one of limbs as far as the
-/// less limb-like of its bones; between the ends of a bone it goes over smoothly.
+/// How far the skin of each slot is that of a limb, in [0, 1]. A joint is one of limbs as far as
+/// the less limb-like of its bones; between the ends of a bone it goes over smoothly.
 std::vector<float> limb_shares(const RiggedMesh& rig, const BonePartition& partition,
                                const SkinState& state, LimbRatios ratios);
 

@@ -37,7 +37,8 @@ constexpr float kAgrees = 0.8F;
 constexpr float kTurnedAway = -0.5F;
 constexpr float kFacing = 0.0F;
 
-/// Excess over contact along a way, over its length: two depths, each of which grows by little more.
+/// Excess over contact along a way, over its length: two depths, each of which grows by little
+/// more.
 constexpr float kSteepest = 3;
 
 /// Own depth, in local radii, from which on both sides of a contact yield alike.
@@ -253,14 +254,15 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
   std::size_t own_count = 0;
   for (const BoneSample& sample : at.all())
     if (field_.same_part(owner, sample.bone)) own_part[own_count++] = sample;
-  const FieldComposition::Composed all = 
+  const FieldComposition::Composed all =
       field_.compose_smoothly({own_part.data(), own_count}, kSameField);
   const float slope = length3(all.gradient);
   const float outward_length = length3(outward);
   if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
   const float agree =
       smooth_ramp(kDisagrees, kAgrees, -dot3(all.gradient, outward) / (slope * outward_length));
-  const float known = smooth_ramp(0.02F, 0.15F, all.value) * (1 - smooth_ramp(0.85F, 0.98F, all.value));
+  const float known =
+      smooth_ramp(0.02F, 0.15F, all.value) * (1 - smooth_ramp(0.85F, 0.98F, all.value));
   const float free = 1 - crowding(state, slot, at);
   const Float4 n = all.gradient / splat(slope);
   const float before = dot3(n, moved_[slot]);

@@ -16,7 +16,7 @@ constexpr double kEnough = 1e-2;
 constexpr double kLeastArea = 1e-3;
 
 /// Lengths over which a displacement decays between what is asked and what stands still.
-constexpr double kReach = 3;
+constexpr double kReach = 1.5;
 
 double bending(double cutoff) { return std::pow(cutoff / 7.85, 4); }
 

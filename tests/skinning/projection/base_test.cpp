@@ -1,5 +1,3 @@
-#include "solvers/skinning/base/base_skin.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "core/geometry/procedural.h"
 #include "metrics/volume/overlap_volume.h"
+#include "solvers/skinning/base/base_skin.h"
 #include "solvers/skinning/base/spread_weights.h"
 #include "solvers/skinning/implicit.h"
 #include "tests/skinning/fixtures.h"
@@ -72,7 +71,8 @@ TEST(BaseSkin, IsCentersOfRotationOnTheTrunkAndDualQuaternionsOnLimbs) {
   ASSERT_GT((limb - trunk).rowwise().norm().maxCoeff(), 1e-4);
   Eigen::MatrixX3d posed;
   for (const double share : {0.0, 0.25, 1.0}) {
-    BaseSkin(rig, BaseKind::limbs_and_trunk, Eigen::VectorXd::Constant(n, share)).deform(pose, posed);
+    BaseSkin(rig, BaseKind::limbs_and_trunk, Eigen::VectorXd::Constant(n, share))
+        .deform(pose, posed);
     EXPECT_LE((posed - trunk - share * (limb - trunk)).cwiseAbs().maxCoeff(), 1e-12) << share;
   }
 }
@@ -89,8 +89,8 @@ double volume_change(const RiggedMesh& rig, const ImplicitOptions& options, doub
 
 TEST(JointVolumes, GiveBackWhatABentTubeLoses) {
   const RiggedMesh rig = narrow_tube(24, 30);
-  for (const BaseKind base : {BaseKind::dual_quaternion, BaseKind::centers_of_rotation,
-                              BaseKind::direct_delta_mush}) {
+  for (const BaseKind base :
+       {BaseKind::dual_quaternion, BaseKind::centers_of_rotation, BaseKind::direct_delta_mush}) {
     ImplicitOptions options;
     options.base = base;
     EXPECT_NEAR(volume_change(rig, options, 1.2), 0, 0.003);
