@@ -105,8 +105,9 @@ double local_radius(const RiggedMesh& rig, const JointRegion::Hinge& hinge) {
   const double radius =
       percentile_of(enough ? std::move(blended) : std::move(near), 50).value_or(0);
   if (radius <= 0) {
-    throw Error("the joint has no skin around it",
-                "joint '" + rig.skeleton.joints[hinge.joint].name + "'", "a joint inside the mesh");
+    throw NoSkinAboutJoint("the joint has no skin around it",
+                           "joint '" + rig.skeleton.joints[hinge.joint].name + "'",
+                           "a joint inside the mesh");
   }
   return radius;
 }
@@ -261,9 +262,9 @@ std::vector<int> seeds(const RiggedMesh& rig, const JointRegion& region,
       best = t;
     }
     if (best < 0) {
-      throw Error("no skin of its own lies near the joint",
-                  "joint '" + rig.skeleton.joints[hinge.joint].name + "'",
-                  "a joint inside the mesh, with weights");
+      throw NoSkinAboutJoint("no skin of its own lies near the joint",
+                             "joint '" + rig.skeleton.joints[hinge.joint].name + "'",
+                             "a joint inside the mesh, with weights");
     }
     if (!holds_joint(found, best)) found.push_back(best);
   }

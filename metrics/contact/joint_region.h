@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/mesh.h"
 
 namespace geoprior {
@@ -37,6 +38,12 @@ struct JointRegion {
       border_loops;  ///< vertices, in the order of the region's boundary edges
 };
 
+/// A joint about which there is no skin.
+class NoSkinAboutJoint : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Chooses the limb's own skin around the joints, by a flood fill that starts at the triangle next
 /// to each joint.
 ///
@@ -56,7 +63,8 @@ struct JointRegion {
 /// @param joints     joints that turn; each must have a parent
 /// @param bend_axes  one rest axis a joint (zero vectors allowed)
 /// @param extent     half length of the region along both bones, in local radii
-/// @throws Error  on a joint without parent or without skin, or when the counts differ
+/// @throws NoSkinAboutJoint  on a joint without skin
+/// @throws Error  on a joint without parent, or when the counts differ
 JointRegion make_joint_region(const RiggedMesh& rig, const std::string& name,
                               const std::vector<int>& joints,
                               const std::vector<Eigen::Vector3d>& bend_axes, double extent = 2.0);

@@ -12,24 +12,25 @@
 
 namespace geoprior::skinning {
 
-/// Implicit skinning (Vaillant et al. 2013; thesis 3.1): dual quaternion skinning, or another base
-/// (base_skin.h; below it is meant where dual quaternions are named), corrected by a
-/// field that knows what the skin encloses.
+/// Implicit skinning (thesis 3.1; Vaillant et al. 2013): skin that blends the motion of its joints,
+/// corrected by a field that knows what the skin encloses.
 ///
 /// Once, in the rest pose: the skin is split among the bones; each part is turned into a field
 /// f_b in [0, 1] by Hermite radial basis functions (hrbf.h, eq. 3.1) and compact support; every
 /// vertex remembers iso = F(rest position) of the composed field F, which keeps the details that
 /// the smooth fields do not have.
 /// Per pose: the fields move rigidly with their bones and meet through the operators of the joints
-/// (composition.h); vertices start at their dual quaternion positions and march along grad F to
-/// their iso-value (projection.h, eq. 3.2 with its sign corrected), spread by tangential relaxation
-/// (relaxation.h); they stop where the gradient turns: a contact, smoothed at the end
-/// (contact_smoothing.h).
+/// (composition.h). By default the base (base/base_skin.h, over weights that are spread) is
+/// corrected by one smooth displacement of all vertices (smooth/projection.h). As published
+/// (`ProjectionKind::marching`) vertices start at their dual quaternion positions, or those of
+/// another base, and march along grad F to their iso-value (projection.h, eq. 3.2 with its sign
+/// corrected), spread by tangential relaxation (relaxation.h); they stop where the gradient turns:
+/// a contact, smoothed at the end (contact_smoothing.h).
 ///
 /// It keeps the volume of joints and resolves contact at vertices, without collision detection. It
-/// does not know time: each pose is solved from its dual quaternion positions, so a vertex that
-/// starts on the far side of a bone it should not have entered stays there. The skin does not
-/// slide, and details thinner than the spacing of the samples are only carried along.
+/// does not know time: each pose is solved from its base, so a vertex that starts on the far side
+/// of a bone it should not have entered stays there (but with tracking). Details thinner than the
+/// spacing of the samples are only carried along.
 class ImplicitSkinning {
  public:
   /// Samples, HRBF fields, caches and rest iso-values.

@@ -114,11 +114,10 @@ void describe_correction(OptionVisitor& v, SmoothOptions& o) {
           {.doc = "pull of a section's correction to zero, over the weight of a field's demand",
            .min = 1e-6,
            .max = 1});
-  v.value(
-      "evaluations", o.evaluations,
-      {.doc = "evaluations of the fields for sections; 0: nothing is corrected (a null control)",
-       .min = 0,
-       .max = 100});
+  v.value("evaluations", o.evaluations,
+          {.doc = "evaluations of the fields for sections; 0: sections stay as the base has them",
+           .min = 0,
+           .max = 100});
   v.value("tracking_step_deg", o.tracking_step_deg,
           {.doc = "largest turn of a joint between two poses that is tracked in one step",
            .unit = "deg",

@@ -18,6 +18,7 @@ class ImplicitSmoothing {
  public:
   /// @param mesh  any triangle mesh of n vertices; one without triangles keeps its value
   ImplicitSmoothing(const TriMesh& mesh, double length, int steps);
+  /// The same with D = diag(mass), positive: (D + length L) X' = D X.
   ImplicitSmoothing(const TriMesh& mesh, const Eigen::VectorXd& mass, double length, int steps);
 
   /// Smooths the columns of `values` (n x any number).

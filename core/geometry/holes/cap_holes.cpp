@@ -90,7 +90,7 @@ HoleCaps cap_holes(const TriMesh& mesh) {
     Enclosed& part = parts.of(loop[0]);
     if (cap_of[i].empty()) {
       caps.open.push_back({loop, false});
-    } else if (!part.stays_open && part.is_sheet()) {
+    } else if (part.is_sheet()) {
       caps.open.push_back({loop, true});
     } else {
       caps.capped.push_back(loop);

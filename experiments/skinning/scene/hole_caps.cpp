@@ -105,7 +105,7 @@ void take_caps_off(TriMesh& mesh, int count) {
 
 std::vector<std::string> hole_notes(const HoleCaps& caps, const RiggedMesh& rig) {
   std::vector<std::string> notes;
-  if (!caps.has_inside) return notes;
+  if (!caps.has_inside && caps.capped.empty()) return notes;
   if (!caps.capped.empty()) notes.push_back(capped_note(caps, rig));
   if (!caps.open.empty() || caps.stray_edges > 0) notes.push_back(open_note(caps, rig));
   return notes;

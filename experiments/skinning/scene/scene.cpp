@@ -77,7 +77,7 @@ std::vector<JointRegion> make_regions(const SkinningSceneOptions& options, const
   for (const std::vector<Hinge>& group : group_neighbours(hinges, rig.skeleton)) {
     try {
       regions.push_back(make_region(rig, group, options.region_extent));
-    } catch (const Error& e) {
+    } catch (const NoSkinAboutJoint& e) {
       if (!options.regions.empty()) throw;
       warnings.push_back(std::string(e.what()) + ": no region of it is measured");
     }

@@ -25,7 +25,13 @@ BaseSkin::BaseSkin(const RiggedMesh& rig, BaseKind kind, const Eigen::VectorXd& 
 void BaseSkin::deform(const Pose& pose, Eigen::MatrixX3d& posed) {
   std::visit([&](const auto& skin) { skin.deform(pose, posed); }, skin_);
   if (!trunk_) return;
-  trunk_->deform(pose, trunk_posed_);
+  // As dual quaternions do: what is not rigid is dropped.
+  rigid_.resize(pose.size());
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    rigid_[j] = pose[j];
+    rigid_[j].linear() = rigid_part(pose[j]).linear();
+  }
+  trunk_->deform(rigid_, trunk_posed_);
   posed = trunk_posed_ + limb_share_.asDiagonal() * (posed - trunk_posed_);
 }
 

@@ -31,6 +31,7 @@ class BaseSkin {
   Skin skin_;
   std::optional<CentersOfRotation> trunk_;  ///< where two methods share the skin
   Eigen::VectorXd limb_share_;
+  Pose rigid_;
   Eigen::MatrixX3d trunk_posed_;
 };
 

@@ -10,7 +10,7 @@ namespace geoprior::skinning {
 /// solves (A R^-2 + c L) W' = A R^-2 W several times, A vertex areas, R local radii, L the
 /// cotangent Laplacian, c = width^2 over the number of times. They blend over about the same part
 /// of a limb then, however narrow they were painted and however fine the mesh. Weights of less than
-/// 1e-3 are dropped; the others of a vertex sum to 1.
+/// 1e-3 are dropped (but the largest of a vertex); those that are kept sum to 1.
 ///
 /// @param rig     welded mesh of n vertices, weights n x m
 /// @param radius  local, of each vertex (m), positive

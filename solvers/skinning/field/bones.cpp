@@ -115,6 +115,7 @@ BonePartition partition_bones(const RiggedMesh& rig, PartitionRule rule, double 
       bone.radius =
           std::max(bone.radius, segment_distance(rig.mesh.V.row(v), bone.head, bone.tail));
     }
+    bone.reach = bone.radius;
     bone.radius *= radius_scale;
     if (!(bone.radius > 0)) continue;
     bone_of_joint[j] = static_cast<int>(result.bones.size());

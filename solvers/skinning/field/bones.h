@@ -15,6 +15,7 @@ struct FieldBone {
   bool has_children = false;  ///< another bone begins at its tail
   Eigen::Vector3d head = Eigen::Vector3d::Zero();
   Eigen::Vector3d tail = Eigen::Vector3d::Zero();  ///< equal to head for a joint without direction
+  double reach = 0;   ///< largest distance of its vertices from the bone (m)
   double radius = 0;  ///< r: largest distance of its vertices from the bone (m), times scale
   std::vector<int> vertices;  ///< its part of the skin, sorted
 };

@@ -40,7 +40,7 @@ struct SkinState {
   std::vector<float> influence_weight;
 
   // What one frame computes; the next one overwrites it.
-  std::vector<Float4> start;    ///< dual quaternion positions
+  std::vector<Float4> start;    ///< positions of the base
   std::vector<Float4> outward;  ///< rest normal turned by the blended joints; no unit length
   std::vector<Float4> position;
   std::vector<Float4> next;           ///< second buffer of Jacobi passes

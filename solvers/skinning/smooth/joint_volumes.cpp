@@ -17,18 +17,24 @@ constexpr double kSwellingReach = 3;
 /// Largest swelling in that radius.
 constexpr double kLargestSwelling = 0.6;
 
+/// How far from the joint rigid skin is watched, in that radius.
+constexpr double kRigidReach = 6;
+
 /// Means over one rings that smooth shares where skin of two bones meets.
 constexpr int kSharePasses = 8;
 constexpr int kNormalPasses = 20;
 
-/// Skin of the inner side of a joint swells less, by exp(-(kInside x)^2), x the cosine of its
-/// normal and the inside, times the sine of half the turn: it has nowhere to go.
-constexpr float kInside = 1;
-
-constexpr float kRigid = 1e-4F;
+/// Weights that are none, shares of a swelling that are none, and the mobility of rigid skin.
 constexpr float kLeastWeight = 1e-6F;
+constexpr float kLeastShare = 1e-4F;
+constexpr float kRigid = 1e-4F;
 
 constexpr std::size_t kTrianglesOfTask = 2048;
+
+Float4 as_float4(const Eigen::Vector3d& x) {
+  return Float4{static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z()),
+                0.0F};
+}
 
 /// Whether each joint is `joint` or hangs on it.
 std::vector<bool> subtree(const Skeleton& skeleton, int joint) {
@@ -51,14 +57,54 @@ std::vector<float> weights_below(const Skeleton& skeleton, int joint, const Skin
   return weight;
 }
 
-std::vector<float> smoothed(std::vector<float> values, const SkinState& state) {
-  smooth_values(values, state, kSharePasses);
-  return values;
+/// How much each slot is moved by both sides of a joint: w (1 - w) of the weight w below it.
+std::vector<float> mobilities(const std::vector<float>& below) {
+  std::vector<float> mobility;
+  for (const float weight : below) {
+    const float w = std::clamp(weight, 0.0F, 1.0F);
+    mobility.push_back(w > kLeastWeight && w < 1 - kLeastWeight ? w * (1 - w) : 0.0F);
+  }
+  return mobility;
 }
 
-Float4 as_float4(const Eigen::Vector3d& x) {
-  return Float4{static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z()),
-                0.0F};
+/// Skin that moves with one of the two bones counts a little, up to `reach` from the joint: contact
+/// may press it in.
+void add_rigid_skin(std::vector<float>& mobility, const BonePartition& partition,
+                    const FieldBone& bone, double reach, const SkinState& state) {
+  const Float4 head = as_float4(bone.head);
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    if (state.owner[s] < 0) continue;
+    if (static_cast<double>(length3(state.rest[s] - head)) > reach) continue;
+    const int joint = partition.bones[state.owner[s]].joint;
+    if (joint == bone.joint || joint == partition.bones[bone.parent].joint) mobility[s] += kRigid;
+  }
+}
+
+/// Mean of the local radii of the skin that a joint moves (m); 0 where there is none.
+double radius_of_flesh(const std::vector<float>& mobility, const std::vector<float>& radius,
+                       const Eigen::VectorXd& area, const SkinState& state) {
+  double weight = 0, mean = 0;
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    const double own = static_cast<double>(mobility[s]);
+    weight += own * area(state.vertex[s]);
+    mean += own * area(state.vertex[s]) * static_cast<double>(radius[s]);
+  }
+  return weight > 0 ? mean / weight : 0;
+}
+
+/// p_j of each slot: 1 at the joint, 0 from `reach` on and where it moves nothing.
+std::vector<float> bump_about(const Eigen::Vector3d& head, double reach,
+                              const std::vector<float>& mobility, const RiggedMesh& rig,
+                              const SkinState& state) {
+  std::vector<float> bump(state.size(), 0.0F);
+  for (std::size_t s = 0; s < state.size(); ++s) {
+    if (!(mobility[s] > 0)) continue;
+    const Eigen::Vector3d p = rig.mesh.V.row(state.vertex[s]);
+    const double x = (p - head).norm() / reach;
+    if (x < 1) bump[s] = static_cast<float>((1 - x * x) * (1 - x * x));
+  }
+  smooth_values(bump, state, kSharePasses);
+  return bump;
 }
 
 /// Normals at rest without the detail of the skin.
@@ -94,46 +140,30 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
     flesh.parent = partition.bones[bone.parent].joint;
     flesh.head = bone.head;
     flesh.along = (bone.tail - bone.head).normalized();
-    flesh.place = as_float4(flesh.head);
-    const std::vector<float> below =
-        smoothed(weights_below(rig.skeleton, flesh.joint, state), state);
-    std::vector<float> mobility(state.size(), 0.0F);
-    double weight = 0, mean = 0;
-    for (std::size_t s = 0; s < state.size(); ++s) {
-      const float w = std::clamp(below[s], 0.0F, 1.0F);
-      if (w > kLeastWeight && w < 1 - kLeastWeight) mobility[s] = w * (1 - w);
-      const double m = static_cast<double>(mobility[s]) * area(state.vertex[s]);
-      weight += m;
-      mean += m * static_cast<double>(radius[s]);
-      const int owner = state.owner[s];
-      if (owner >= 0 && (partition.bones[owner].joint == flesh.joint ||
-                         partition.bones[owner].joint == flesh.parent))
-        mobility[s] += kRigid;
-    }
-    if (!(weight > 0)) continue;
-    const double r = mean / weight;
+    flesh.place = flesh.parent_place = as_float4(flesh.head);
+    std::vector<float> below = weights_below(rig.skeleton, bone.joint, state);
+    smooth_values(below, state, kSharePasses);
+    std::vector<float> mobility = mobilities(below);
+    const double r = radius_of_flesh(mobility, radius, area, state);
+    if (!(r > 0)) continue;
     flesh.largest = kLargestSwelling * r;
+    add_rigid_skin(mobility, partition, bone, kRigidReach * r, state);
     for (int f = 0; f < static_cast<int>(rig.mesh.F.rows()); ++f) {
       Triangle triangle{};
       triangle.face = f;
       for (int k = 0; k < 3; ++k) {
         triangle.slot[k] = slot_of_vertex[rig.mesh.F(f, k)];
+        triangle.below += std::clamp(below[triangle.slot[k]], 0.0F, 1.0F) / 3;
         triangle.mobility += mobility[triangle.slot[k]] / 3;
       }
       if (!(triangle.mobility > 0)) continue;
-      triangle.rest = cone(triangle, state.rest, flesh.place);
+      triangle.rest = cone(flesh, triangle, state.rest);
       flesh.triangles.push_back(triangle);
     }
-    std::vector<float> bump(state.size(), 0.0F);
+    const std::vector<float> bump =
+        bump_about(flesh.head, kSwellingReach * r, mobility, rig, state);
     for (std::size_t s = 0; s < state.size(); ++s) {
-      if (!(mobility[s] > 0)) continue;
-      const Eigen::Vector3d p = rig.mesh.V.row(state.vertex[s]);
-      const double x = (p - flesh.head).norm() / (kSwellingReach * r);
-      if (x < 1) bump[s] = static_cast<float>((1 - x * x) * (1 - x * x));
-    }
-    bump = smoothed(std::move(bump), state);
-    for (std::size_t s = 0; s < state.size(); ++s) {
-      if (bump[s] > 1e-4F) {
+      if (bump[s] > kLeastShare) {
         flesh.swellings.push_back(
             {static_cast<int>(s), bump[s], static_cast<float>(area(state.vertex[s])), outward[s]});
       }
@@ -142,8 +172,10 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
   }
 }
 
-float JointVolumes::cone(const Triangle& triangle, const std::vector<Float4>& position,
-                         Float4 tip) {
+float JointVolumes::cone(const JointFlesh& flesh, const Triangle& triangle,
+                         const std::vector<Float4>& position) {
+  const Float4 tip =
+      flesh.parent_place + splat(triangle.below) * (flesh.place - flesh.parent_place);
   return dot3(position[triangle.slot[0]] - tip,
               cross3(position[triangle.slot[1]] - tip, position[triangle.slot[2]] - tip));
 }
@@ -156,7 +188,7 @@ double JointVolumes::lost(const JointFlesh& flesh, const std::vector<Float4>& po
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = flesh.triangles[i];
       const float share = t.mobility * flesh.turn / moved_[t.face];
-      sum += static_cast<double>(share * (t.rest - cone(t, position, flesh.place)));
+      sum += static_cast<double>(share * (t.rest - cone(flesh, t, position)));
     }
     partial_[begin / kTrianglesOfTask] = sum;
   });
@@ -173,14 +205,16 @@ void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
     const Eigen::Matrix3d& own = field.rotations()[flesh.joint];
     const Eigen::Matrix3d& parent = field.rotations()[flesh.parent];
     flesh.place = as_float4(pose[flesh.joint] * flesh.head);
+    flesh.parent_place = as_float4(pose[flesh.parent] * flesh.head);
     flesh.turn = static_cast<float>(std::max(0.0, 3 - own.cwiseProduct(parent).sum())) + 1e-12F;
     for (const Triangle& t : flesh.triangles) moved_[t.face] += t.mobility * flesh.turn;
+    // Where the bone went, as long as the sine of half the turn.
     const Float4 inner = as_float4((own - parent) * flesh.along / 2);
     flesh.area = 0;
     for (Swelling& swelling : flesh.swellings) {
       const Float4 outward = turned(rotations[swelling.slot], swelling.outward);
-      const float cosine = dot3(inner, outward);
-      const float inside = kInside * std::max(0.0F, cosine);
+      // Skin of the inner side has nowhere to go.
+      const float inside = std::max(0.0F, dot3(inner, outward));
       const float share = swelling.share * std::exp(-inside * inside);
       swelling.way = splat(share) * outward;
       flesh.area += static_cast<double>(share * swelling.area);
@@ -188,9 +222,11 @@ void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
   }
 }
 
-void JointVolumes::restore(std::vector<Float4>& base, std::vector<Float4>& position) {
+bool JointVolumes::restore(std::vector<Float4>& base, std::vector<Float4>& position) {
+  bool bends = false;
   for (JointFlesh& flesh : joints_) {
     if (!flesh.bends || !(flesh.area > 0)) continue;
+    bends = true;
     const double missing = lost(flesh, position);
     const double before = flesh.swelling;
     flesh.swelling = std::clamp(before + missing / flesh.area, -flesh.largest, flesh.largest);
@@ -201,6 +237,7 @@ void JointVolumes::restore(std::vector<Float4>& base, std::vector<Float4>& posit
       position[swelling.slot] += way;
     }
   }
+  return bends;
 }
 
 }  // namespace geoprior::skinning

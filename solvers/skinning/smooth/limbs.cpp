@@ -18,7 +18,7 @@ constexpr int kLimbPasses = 5;
 std::vector<double> limb_likeness(const BonePartition& partition, LimbRatios ratios) {
   std::vector<double> likeness;
   for (const FieldBone& bone : partition.bones) {
-    const double ratio = (bone.tail - bone.head).norm() / (2 * bone.radius);
+    const double ratio = (bone.tail - bone.head).norm() / (2 * bone.reach);
     likeness.push_back(
         static_cast<double>(smooth_ramp(ratios.trunk, ratios.limb, static_cast<float>(ratio))));
   }
@@ -70,7 +70,7 @@ Eigen::VectorXd local_radii(const RiggedMesh& rig, const BonePartition& partitio
     const int owner = partition.bone_of_vertex[v];
     if (owner < 0) continue;
     const FieldBone& bone = partition.bones[owner];
-    radius(v) = std::max(kLeastRadius * bone.radius,
+    radius(v) = std::max(kLeastRadius * bone.reach,
                          segment_distance(rig.mesh.V.row(v), bone.head, bone.tail));
   }
   return radius;

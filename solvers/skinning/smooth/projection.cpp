@@ -41,6 +41,9 @@ constexpr float kFacing = 0.0F;
 /// more.
 constexpr float kSteepest = 3;
 
+/// Length of a mean of unit directions below which they contradict each other.
+constexpr float kNoWay = 0.05F;
+
 /// Own depth, in local radii, from which on both sides of a contact yield alike.
 constexpr float kOwnDepth = 0.1F;
 
@@ -127,12 +130,13 @@ SmoothProjection::SmoothProjection(const RiggedMesh& rig, const BonePartition& p
       radius_(slot_radii(rig, partition, state)),
       trust_(limb_shares(rig, partition, state, kKnownSections)),
       system_(rig.mesh, state, radius_),
-      volumes_(rig, partition, state, radius_),
       rotation_(state.size()),
       demand_(state.size()),
       moved_(state.size()),
       seen_(state.size()),
-      kept_(state.size()) {}
+      kept_(state.size()) {
+  if (options_.volume) volumes_.emplace(rig, partition, state, radius_);
+}
 
 void SmoothProjection::blend_rotations(const SkinState& state,
                                        const std::vector<Float4>& rotations) {
@@ -218,9 +222,10 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
     // Both sides yield as their own fields do: towards the surface where both are equally deep.
     const Float4 way = splat(inside) * at.own.inward - other.inward;
     const float slope = length3(way);
-    if (towards <= 0 || !(slope > 0.05F)) continue;
-    const float depth = excess / std::max(slope, length3(other.inward));
-    const float weight = towards * smooth_ramp(-band, band, depth);
+    if (!(slope > 0)) continue;
+    const float depth = excess / std::min(std::max(slope, length3(other.inward)), kSteepest);
+    const float weight =
+        towards * smooth_ramp(-band, band, depth) * smooth_ramp(kNoWay, 4 * kNoWay, slope);
     if (!(weight > 0)) continue;
     weights += weight;
     excess_sum += weight * depth;
@@ -228,8 +233,9 @@ Demand SmoothProjection::contact_demand(const SkinState& state, std::size_t slot
     direction += splat(weight / slope) * way;
   }
   const float along = length3(direction);
-  if (!(weights > 0) || !(along > 0.05F * weights)) return {};
-  const float deepest = excess_sum / weights, facing = facing_sum / weights;
+  if (!(weights > 0) || !(along > 0)) return {};
+  const float deepest = excess_sum / weights;
+  const float facing = facing_sum / weights * smooth_ramp(kNoWay, 4 * kNoWay, along / weights);
   direction /= splat(along);
   // Fields may be fuller than the skin that is there: only what has met is parted.
   const auto met =
@@ -318,9 +324,9 @@ float SmoothProjection::nearest_contact(const SkinState& state, std::size_t slot
   return nearest;
 }
 
-bool SmoothProjection::is_free(std::size_t slot) const {
+bool SmoothProjection::is_free(const SkinState& state, std::size_t slot) const {
   const float band = static_cast<float>(options_.contact_band) * radius_[slot];
-  const float way = length3(moved_[slot] - seen_[slot].moved);
+  const float way = length3(state.position[slot] - seen_[slot].position);
   return seen_[slot].excess < 0 && seen_[slot].excess + kSteepest * (band + way) < 0;
 }
 
@@ -334,15 +340,16 @@ void SmoothProjection::ask(SkinState& state, Stage stage) {
       const std::span<const int> bones{near.data(), static_cast<std::size_t>(count)};
       for (std::size_t s = b * SkinState::kBlock; s < end_of_block(state, b); ++s) {
         demand_[s] = {};
-        if (state.owner[s] < 0 || (stage == Stage::section ? trust_[s] <= 0 : is_free(s))) continue;
+        if (state.owner[s] < 0 || (stage == Stage::section ? trust_[s] <= 0 : is_free(state, s)))
+          continue;
         const Sampled at = sampled(state, s, bones);
         state.evaluations[b] += count;
         if (stage == Stage::section) {
           if (at.count > 0) demand_[s] = section_demand(state, s, at);
           continue;
         }
-        seen_[s] = {moved_[s], nearest_contact(state, s, at)};
-        if (is_free(s)) continue;
+        seen_[s] = {state.position[s], nearest_contact(state, s, at)};
+        if (is_free(state, s)) continue;
         demand_[s] = contact_demand(state, s, at);
         demand_[s].amount += dot3(demand_[s].direction, moved_[s]);
       }
@@ -413,6 +420,10 @@ void SmoothProjection::keep() {
   }
 }
 
+bool SmoothProjection::restore_volume(SkinState& state) {
+  return volumes_ && volumes_->restore(base_, state.position);
+}
+
 int SmoothProjection::resolve_contacts(SkinState& state) {
   const SmoothSystem::Options options{options_.contact_cutoff, options_.contact_anchor,
                                       options_.iterations};
@@ -423,11 +434,11 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
   }
   int steps = 0;
   for (int i = 0; i < options_.contact_evaluations; ++i) {
-    if (options_.volume) volumes_.restore(base_, state.position);
+    const bool bends = restore_volume(state);
     proximity_.build(state.position);
     ask(state, Stage::contact);
     system_.open(demand_, options);
-    if (system_.open_blocks().empty() && !options_.volume) break;
+    if (system_.open_blocks().empty() && !bends) break;
     steps += system_.solve(demand_, options, moved_);
     place(state);
     for (std::size_t s = 0; s < state.size(); ++s)
@@ -440,14 +451,15 @@ int SmoothProjection::resolve_contacts(SkinState& state) {
 int SmoothProjection::solve(SkinState& state, const Pose& pose,
                             const std::vector<Float4>& rotations) {
   blend_rotations(state, rotations);
-  volumes_.set_pose(field_, pose, rotation_);
+  if (volumes_) volumes_->set_pose(field_, pose, rotation_);
   std::fill(state.stop.begin(), state.stop.end(), VertexStop::converged);
   base_ = state.start;
   system_.close(moved_);
   find_awake(state);
-  if (options_.volume) volumes_.restore(base_, state.position);
+  restore_volume(state);
   int steps = correct_sections(state);
   base_ = state.position;
+  restore_volume(state);
   steps += resolve_contacts(state);
   return steps;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,10 +68,12 @@ class SmoothProjection {
 
   /// What a vertex saw of contact when it last was asked.
   struct Seen {
-    Float4 moved{};
+    Float4 position{};
     float excess = 0;  ///< over the nearest contact (m); 0: it was not asked
   };
 
+  /// Swells the skin by what it has lost. @return whether any joint bends
+  bool restore_volume(SkinState& state);
   void blend_rotations(const SkinState& state, const std::vector<Float4>& rotations);
   int correct_sections(SkinState& state);
   int resolve_contacts(SkinState& state);
@@ -95,7 +98,7 @@ class SmoothProjection {
   [[nodiscard]] float nearest_contact(const SkinState& state, std::size_t slot,
                                       const Sampled& at) const;
   /// Whether a vertex has not moved far enough to be in contact now.
-  [[nodiscard]] bool is_free(std::size_t slot) const;
+  [[nodiscard]] bool is_free(const SkinState& state, std::size_t slot) const;
   /// How far other bones crowd a vertex, in [0, 1]: 1 in contact, 0 well before it.
   [[nodiscard]] float crowding(const SkinState& state, std::size_t slot, const Sampled& at) const;
   /// How much deeper a vertex is in another bone's field than in its own, the gap included (m).
@@ -112,7 +115,7 @@ class SmoothProjection {
   std::vector<float> radius_;  // local, per slot
   std::vector<float> trust_;   // what a limb's field knows about the slot's skin
   SmoothSystem system_;
-  JointVolumes volumes_;
+  std::optional<JointVolumes> volumes_;
   SkinProximity proximity_;
   std::vector<std::vector<int>> joints_;  // per block, whose motion decides what fields ask
   std::vector<std::uint8_t> is_awake_;    // per block
