@@ -67,7 +67,7 @@ enum class BaseKind { limbs_and_trunk, dual_quaternion, centers_of_rotation, dir
 struct SmoothOptions {
   double spread = 0.6;
   bool volume = true;
-  double section = 0.5;
+  double section = 1;
   double cutoff = 2.2;
   double contact_cutoff = 1.2;
   double anchor = 0.15;  ///< mu
