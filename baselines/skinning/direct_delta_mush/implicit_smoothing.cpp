@@ -49,8 +49,8 @@ struct RowOfTwelve {
 ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, double length, int steps)
     : ImplicitSmoothing(mesh, positive_cotangent_laplacian(mesh).diagonal(), length, steps) {}
 
-ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, const Eigen::VectorXd& mass, double length,
-                                     int steps)
+ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, const Eigen::VectorXd& mass,
+                                     double length, int steps)
     : steps_(steps) {
   using Sparse = Eigen::SparseMatrix<double>;
   Sparse laplacian = positive_cotangent_laplacian(mesh);
