@@ -82,19 +82,28 @@ std::vector<BoneField> fit_fields(const RiggedMesh& rig, const BonePartition& pa
   return fields;
 }
 
-/// Skin that blends over a part of its limb, unless each vertex is to march from where its weights
-/// bring it.
-RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition,
-                      const ImplicitOptions& options) {
-  RiggedMesh spread = rig;
-  if (options.projection == ProjectionKind::marching || !(options.smooth.spread > 0)) return spread;
+void require_fields(const BonePartition& partition) {
+  if (partition.bones.empty()) {
+    throw NotApplicable("no joint moves enough vertices for a field", "implicit skinning",
+                        "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
+  }
+  if (std::ssize(partition.bones) > kMaxFieldBones) {
+    throw NotApplicable(std::to_string(partition.bones.size()) + " joints have skin of their own",
+                        "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
+  }
+}
+
+/// Whether skin blends over a part of its limb; as published each vertex marches from where its own
+/// weights bring it.
+bool spreads(const ImplicitOptions& options) {
+  return options.projection != ProjectionKind::marching && options.smooth.spread > 0;
+}
+
+RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition, double width) {
   Eigen::VectorXd radius = local_radii(rig, partition);
-  const double owned = static_cast<double>((radius.array() > 0).count());
-  if (!(owned > 0)) return spread;
-  const double mean = radius.sum() / owned;
+  const double mean = radius.sum() / static_cast<double>((radius.array() > 0).count());
   radius = (radius.array() > 0).select(radius, mean);
-  spread.weights = spread_weights(rig, radius, options.smooth.spread);
-  return spread;
+  return {rig.mesh, rig.skeleton, spread_weights(rig, radius, width)};
 }
 
 BaseKind base_of(const ImplicitOptions& options) {
@@ -102,13 +111,15 @@ BaseKind base_of(const ImplicitOptions& options) {
   return options.base.value_or(marches ? BaseKind::dual_quaternion : BaseKind::limbs_and_trunk);
 }
 
-Eigen::VectorXd vertex_limb_shares(const RiggedMesh& rig, const BonePartition& partition,
-                                   const SkinState& state) {
+/// The base, with what it has to know of limbs.
+BaseSkin base_skin(const RiggedMesh& rig, const BonePartition& partition, const SkinState& state,
+                   BaseKind kind) {
+  if (kind != BaseKind::limbs_and_trunk) return {rig, kind, {}};
   const std::vector<float> of_slot = limb_shares(rig, partition, state, kLimbsOfBase);
   Eigen::VectorXd share(rig.mesh.vertex_count());
   for (std::size_t s = 0; s < state.size(); ++s)
     share(state.vertex[s]) = static_cast<double>(of_slot[s]);
-  return share;
+  return {rig, kind, share};
 }
 
 Float4 row_of(const Eigen::MatrixX3d& V, int v) {
@@ -119,26 +130,19 @@ Float4 row_of(const Eigen::MatrixX3d& V, int v) {
 }  // namespace
 
 struct ImplicitSkinning::Impl {
-  Impl(const RiggedMesh& rig, const ImplicitOptions& chosen, const RunContext& context)
+  /// @param skin  the rig with the weights that move it
+  Impl(const RiggedMesh& rig, const RiggedMesh& skin, BonePartition bones,
+       const ImplicitOptions& chosen, const RunContext& context)
       : options(chosen),
         joint_count(rig.skeleton.size()),
         graph(one_rings(rig.mesh.F, rig.mesh.vertex_count())),
-        partition(partition_bones(rig, options.partition, options.radius_scale)),
+        partition(std::move(bones)),
         field(fit_fields(rig, partition, options, context),
               joint_operators(partition, rig.skeleton, options), options.support,
               partition.bone_of_vertex, graph, options.limb_contact),
         projection(field, options),
-        skin(spread_rig(rig, partition, options)),
         state(skin, graph, partition.bone_of_vertex),
-        base(skin, base_of(options), vertex_limb_shares(skin, partition, state)) {
-    if (partition.bones.empty()) {
-      throw NotApplicable("no joint moves enough vertices for a field", "implicit skinning",
-                          "at least " + std::to_string(kMinBoneVertices) + " vertices a joint");
-    }
-    if (std::ssize(partition.bones) > kMaxFieldBones) {
-      throw NotApplicable(std::to_string(partition.bones.size()) + " joints have skin of their own",
-                          "implicit skinning", "at most " + std::to_string(kMaxFieldBones));
-    }
+        base(base_skin(skin, partition, state, base_of(options))) {
     rotation.resize(3 * static_cast<std::size_t>(joint_count));
     field.set_pose(rest_pose(joint_count));
     projection.record_rest(state);
@@ -167,7 +171,6 @@ struct ImplicitSkinning::Impl {
   BonePartition partition;
   FieldComposition field;
   Projection projection;
-  RiggedMesh skin;  ///< with the weights that move it
   SkinState state;
   BaseSkin base;
   std::optional<SmoothProjection> smooth_projection;
@@ -268,7 +271,14 @@ ImplicitSkinning::ImplicitSkinning(const RiggedMesh& rig, const ImplicitOptions&
   require_closed_manifold(rig.mesh, "implicit skinning", "mesh");
   validate(rig.skeleton);
   validate(rig.weights, rig.mesh.vertex_count(), rig.skeleton.size());
-  impl_ = std::make_unique<Impl>(rig, options, context);
+  BonePartition partition = partition_bones(rig, options.partition, options.radius_scale);
+  require_fields(partition);
+  if (!spreads(options)) {
+    impl_ = std::make_unique<Impl>(rig, rig, std::move(partition), options, context);
+    return;
+  }
+  const RiggedMesh skin = spread_rig(rig, partition, options.smooth.spread);
+  impl_ = std::make_unique<Impl>(rig, skin, std::move(partition), options, context);
 }
 
 ImplicitSkinning::~ImplicitSkinning() = default;

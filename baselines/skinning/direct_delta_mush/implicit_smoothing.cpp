@@ -47,24 +47,29 @@ struct RowOfTwelve {
 }  // namespace
 
 ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, double length, int steps)
-    : ImplicitSmoothing(mesh, positive_cotangent_laplacian(mesh).diagonal(), length, steps) {}
+    : ImplicitSmoothing(positive_cotangent_laplacian(mesh), {}, length, steps) {}
 
 ImplicitSmoothing::ImplicitSmoothing(const TriMesh& mesh, const Eigen::VectorXd& mass,
                                      double length, int steps)
+    : ImplicitSmoothing(positive_cotangent_laplacian(mesh), mass, length, steps) {}
+
+ImplicitSmoothing::ImplicitSmoothing(const Eigen::SparseMatrix<double>& laplacian,
+                                     const Eigen::VectorXd& mass, double length, int steps)
     : steps_(steps) {
   using Sparse = Eigen::SparseMatrix<double>;
-  Sparse laplacian = positive_cotangent_laplacian(mesh);
-  Eigen::VectorXd diagonal = mass;
+  Eigen::VectorXd diagonal = laplacian.diagonal();
+  if (mass.size() > 0) diagonal = mass;
   diagonal = (diagonal.array() > 0).select(diagonal, 1.0);
   Sparse system = length * laplacian;
-  for (int v = 0; v < mesh.vertex_count(); ++v) system.coeffRef(v, v) += diagonal(v);
+  for (Eigen::Index v = 0; v < diagonal.size(); ++v) system.coeffRef(v, v) += diagonal(v);
   system.makeCompressed();
   const Eigen::SimplicialLLT<Sparse> cholesky(system);
   if (cholesky.info() != Eigen::Success)
     throw Error("the smoothing of the surface has no unique solution", "implicit smoothing");
   factor_ = cholesky.matrixL();
   place_ = cholesky.permutationP().indices();
-  if (place_.size() == 0) place_.setLinSpaced(mesh.vertex_count(), 0, mesh.vertex_count() - 1);
+  if (place_.size() == 0)
+    place_.setLinSpaced(diagonal.size(), 0, static_cast<int>(diagonal.size()) - 1);
   diagonal_.resize(diagonal.size());
   for (Eigen::Index v = 0; v < diagonal.size(); ++v) diagonal_(place_(v)) = diagonal(v);
 }

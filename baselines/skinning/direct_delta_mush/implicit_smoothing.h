@@ -25,6 +25,10 @@ class ImplicitSmoothing {
   void apply(Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& values) const;
 
  private:
+  /// @param laplacian  L, its whole diagonal stored
+  /// @param mass       empty: that diagonal
+  ImplicitSmoothing(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass,
+                    double length, int steps);
   void solve(double* rows) const;
 
   int steps_;

@@ -8,11 +8,6 @@
 namespace geoprior::skinning {
 namespace {
 
-Float4 to_float4(const Eigen::Vector3d& v) {
-  return Float4{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
-                0.0F};
-}
-
 /// p turned about an axis through a point.
 Float4 turned(Float4 v, Float4 axis, AxisTurn turn) {
   return splat(turn.cosine) * v + splat(turn.sine) * cross3(axis, v) +

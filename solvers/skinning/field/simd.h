@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,11 @@ namespace geoprior::skinning {
 using Float4 = float __attribute__((vector_size(16)));
 
 inline Float4 splat(float x) { return Float4{x, x, x, x}; }
+
+inline Float4 to_float4(const Eigen::Vector3d& v) {
+  return Float4{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+                0.0F};
+}
 
 /// Sum of products of the first three components.
 inline float dot3(Float4 a, Float4 b) {

@@ -54,7 +54,7 @@ void Projection::record_rest(SkinState& state) const {
     state.iso[s] = at.value;
     state.rest_other[s] = at.other;
     state.gradient[s] = at.gradient;
-    const float slope = std::sqrt(dot3(at.gradient, at.gradient));
+    const float slope = length3(at.gradient);
     state.rest_normal[s] = slope > 0 ? -xyz(at.gradient) / splat(slope) : Float4{};
   }
 }
@@ -159,7 +159,7 @@ bool Projection::on_far_side(const SkinState& state, std::size_t slot, const Fie
   if (at.bone < 0 || (at.bone != owner && !field_.share_joint(at.bone, owner))) return false;
   if (field_.rest_value(state.rest[slot], at.bone) < kNear) return false;
   const float against = dot3(at.gradient, field_.turn(at.bone, state.rest_normal[slot]));
-  return against > kAgainst * std::sqrt(dot3(at.gradient, at.gradient));
+  return against > kAgainst * length3(at.gradient);
 }
 
 void Projection::walk_out(SkinState& state, std::size_t slot, int bone) const {
@@ -167,7 +167,7 @@ void Projection::walk_out(SkinState& state, std::size_t slot, int bone) const {
   const Float4 normal = state.rest_normal[slot];
   const Float4 out =
       bone == owner ? state.outward[slot] : field_.turn(owner, normal) + field_.turn(bone, normal);
-  const float length = std::sqrt(dot3(out, out));
+  const float length = length3(out);
   const auto radius_of = [&](int b) { return field_.fields()[b].bone.radius; };
   const auto radius = static_cast<float>(std::min(radius_of(owner), radius_of(bone)));
   if (length > 0) state.position[slot] += out * splat(kWalk * max_step_ * radius / length);

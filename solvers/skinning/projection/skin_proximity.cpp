@@ -13,10 +13,7 @@ constexpr float kRim = 0.3F;         // of these limits, within which certainty 
 constexpr float kNearness = 0.1F;    // of the reach: vertices this far count a sixteenth
 
 /// 1 well below a limit, 0 at it.
-float below(float x, float limit, float rim) {
-  const float t = std::clamp((limit - x) / rim, 0.0F, 1.0F);
-  return t * t * (3 - 2 * t);
-}
+float below(float x, float limit, float rim) { return smooth_ramp(0, rim, limit - x); }
 
 }  // namespace
 

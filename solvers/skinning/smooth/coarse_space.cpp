@@ -39,7 +39,7 @@ class Walk {
         const int next = rings_.neighbour[j];
         const std::size_t n = next;
         const Float4 edge = state_.rest[n] - state_.rest[s];
-        const float there = distance + std::sqrt(dot3(edge, edge));
+        const float there = distance + length3(edge);
         if (there > reach || there >= distance_[n]) continue;
         if (distance_[n] == kFar) touched_.push_back(next);
         distance_[n] = there;

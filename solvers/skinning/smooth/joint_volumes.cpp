@@ -31,11 +31,6 @@ constexpr float kRigid = 1e-4F;
 
 constexpr std::size_t kTrianglesOfTask = 2048;
 
-Float4 as_float4(const Eigen::Vector3d& x) {
-  return Float4{static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z()),
-                0.0F};
-}
-
 /// Whether each joint is `joint` or hangs on it.
 std::vector<bool> subtree(const Skeleton& skeleton, int joint) {
   std::vector<bool> below(skeleton.joints.size(), false);
@@ -71,7 +66,7 @@ std::vector<float> mobilities(const std::vector<float>& below) {
 /// may press it in.
 void add_rigid_skin(std::vector<float>& mobility, const BonePartition& partition,
                     const FieldBone& bone, double reach, const SkinState& state) {
-  const Float4 head = as_float4(bone.head);
+  const Float4 head = to_float4(bone.head);
   for (std::size_t s = 0; s < state.size(); ++s) {
     if (state.owner[s] < 0) continue;
     if (static_cast<double>(length3(state.rest[s] - head)) > reach) continue;
@@ -140,7 +135,7 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
     flesh.parent = partition.bones[bone.parent].joint;
     flesh.head = bone.head;
     flesh.along = (bone.tail - bone.head).normalized();
-    flesh.place = flesh.parent_place = as_float4(flesh.head);
+    flesh.place = flesh.parent_place = to_float4(flesh.head);
     std::vector<float> below = weights_below(rig.skeleton, bone.joint, state);
     smooth_values(below, state, kSharePasses);
     std::vector<float> mobility = mobilities(below);
@@ -204,12 +199,12 @@ void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
     if (!flesh.bends) continue;
     const Eigen::Matrix3d& own = field.rotations()[flesh.joint];
     const Eigen::Matrix3d& parent = field.rotations()[flesh.parent];
-    flesh.place = as_float4(pose[flesh.joint] * flesh.head);
-    flesh.parent_place = as_float4(pose[flesh.parent] * flesh.head);
+    flesh.place = to_float4(pose[flesh.joint] * flesh.head);
+    flesh.parent_place = to_float4(pose[flesh.parent] * flesh.head);
     flesh.turn = static_cast<float>(std::max(0.0, 3 - own.cwiseProduct(parent).sum())) + 1e-12F;
     for (const Triangle& t : flesh.triangles) moved_[t.face] += t.mobility * flesh.turn;
     // Where the bone went, as long as the sine of half the turn.
-    const Float4 inner = as_float4((own - parent) * flesh.along / 2);
+    const Float4 inner = to_float4((own - parent) * flesh.along / 2);
     flesh.area = 0;
     for (Swelling& swelling : flesh.swellings) {
       const Float4 outward = turned(rotations[swelling.slot], swelling.outward);

@@ -59,13 +59,12 @@ class JointVolumes {
     Eigen::Vector3d along;  ///< unit, of the joint's bone at rest
     std::vector<Triangle> triangles;
     std::vector<Swelling> swellings;
-    double area = 0;      ///< dV_j / ds_j of skin that swells freely (m^2)
-    double largest = 0;   ///< of s_j (m)
-    double swelling = 0;  ///< s_j (m)
-    Float4 place{};       ///< c_j, as the joint carries it
-    Float4
-        parent_place{};  ///< and as its parent does: elsewhere where something between them moves
-    float turn = 0;      ///< of the two bones against each other, about its square (rad^2)
+    double area = 0;        ///< dV_j / ds_j of skin that swells freely (m^2)
+    double largest = 0;     ///< of s_j (m)
+    double swelling = 0;    ///< s_j (m)
+    Float4 place{};         ///< c_j, as the joint carries it
+    Float4 parent_place{};  ///< as the parent's bone does: elsewhere if a joint between them moves
+    float turn = 0;         ///< of the two bones against each other, about its square (rad^2)
     bool bends = false;
   };
 
