@@ -152,14 +152,33 @@ std::vector<int> vertices_of_regions(const SkinningScene& scene, const OfRegion&
   return vertices;
 }
 
+double rest_union_volume(Shared& shared, const Measured& m) {
+  return shared.union_volume.get(key_of(m.mesh(), m.mesh().V), [&] {
+    return union_volume(m.mesh().V, m.mesh().F, body_column_spacing(m.mesh().V));
+  });
+}
+
+/// Sum of the volumes of all regions, each closed by fans (m^3).
+double rest_volume_of_regions(const Measured& m) {
+  double sum = 0;
+  for (const JointRegion& region : m.scene.regions)
+    sum += region_volume(m.mesh().V, m.mesh().F, region);
+  return sum;
+}
+
 }  // namespace
 
 Measured measured(const SkinningScene& scene, const Frame& frame) {
   return {scene, surface_of(scene, frame), scene.pose_at(frame.parameter)};
 }
 
-Value volume_change(const Measured& m) {
+Value volume_change(Shared& shared, const Measured& m) {
   if (!m.region()) return std::nullopt;
+  if (is_closed(shared, m.mesh())) {
+    const double change =
+        signed_volume(m.posed, m.mesh().F) - signed_volume(m.mesh().V, m.mesh().F);
+    return change / rest_volume_of_regions(m);
+  }
   return relative_change(region_volume(m.mesh().V, m.mesh().F, *m.region()),
                          region_volume(m.posed, m.mesh().F, *m.region()));
 }
@@ -171,24 +190,15 @@ Value volume_change_global(Shared& shared, const Measured& m) {
 
 Value volume_change_union(Shared& shared, const Measured& m) {
   if (!m.region()) return std::nullopt;
-  const auto volume = [&](const Eigen::MatrixX3d& V) {
-    ContentKey key = key_of(m.mesh(), V);
-    add_region(key, *m.region());
-    return shared.union_volume.get(key, [&] {
-      const TriMesh closed = region_surface(V, m.mesh().F, *m.region());
-      return union_volume(closed.V, closed.F, region_column_spacing(*m.region()));
-    });
-  };
-  return relative_change(volume(m.mesh().V), volume(m.posed));
+  const Value body = volume_change_union_body(shared, m);
+  if (!body) return std::nullopt;
+  return *body * rest_union_volume(shared, m) / rest_volume_of_regions(m);
 }
 
 Value volume_change_union_body(Shared& shared, const Measured& m) {
   const std::optional<OverlapStudy> above = excess(shared, m, nullptr);
   if (!above) return std::nullopt;
-  const double spacing = body_column_spacing(m.mesh().V);
-  const double rest = shared.union_volume.get(
-      key_of(m.mesh(), m.mesh().V), [&] { return union_volume(m.mesh().V, m.mesh().F, spacing); });
-  return union_volume_change(m.mesh().V, m.posed, m.mesh().F, *above, rest);
+  return union_volume_change(m.mesh().V, m.posed, m.mesh().F, *above, rest_union_volume(shared, m));
 }
 
 std::optional<OverlapPair> overlap_excess(Shared& shared, const Measured& m) {

@@ -61,13 +61,15 @@ struct Shared {
   Memo<std::shared_ptr<const PlainPose>, 64> plain;
 };
 
-/// Absent without a region.
-Value volume_change(const Measured& m);
+/// What the whole closed surface gains, over the volume that the joints' regions have at rest: the
+/// region alone, closed by fans, would count skin that slides over its border. That is what an open
+/// mesh leaves, of its first region. Absent without a region.
+Value volume_change(Shared& shared, const Measured& m);
 /// Absent for an open mesh.
 Value volume_change_global(Shared& shared, const Measured& m);
 
-/// Change of the volume of what is inside, however often: of the first region, closed by fans, and
-/// of the whole body. Absent without a region, or for an open mesh.
+/// Change of the volume of what is inside, however often, over that of the regions and over that of
+/// the whole body. Absent without a region (the first), or for an open mesh.
 Value volume_change_union(Shared& shared, const Measured& m);
 Value volume_change_union_body(Shared& shared, const Measured& m);
 

@@ -42,11 +42,11 @@ auto against_reference(Measure measure) {
       });
 }
 
-MetricGroup region_volume_group() {
-  return of_frame(volume_change)
+MetricGroup region_volume_group(const SharedPtr& shared) {
+  return of_frame([shared](const Measured& m) { return volume_change(*shared, m); })
       .row("volume_change", "1",
-           "change of the volume of the joint's region, closed by fans from the "
-           "centroids of its border loops, over its rest volume",
+           "change of the signed volume of the whole closed surface over the rest volume of the "
+           "joints' regions",
            kTarget, kFineRatio)
       .row("volume_change_size", "1", "absolute value of volume_change", kLow, kFineRatio,
            [](double change) { return std::abs(change); });
@@ -63,8 +63,8 @@ MetricGroup global_volume_group(const SharedPtr& shared) {
 MetricGroup union_volume_group(const SharedPtr& shared) {
   return of_frame([shared](const Measured& m) { return volume_change_union(*shared, m); })
       .row("volume_change_union", "1",
-           "change of the volume inside the joint's region, closed by fans, over its rest volume; "
-           "what is inside twice counts once",
+           "change of the volume inside the whole closed surface over the rest volume of the "
+           "joints' regions; what is inside twice counts once",
            kTarget, kRatio);
 }
 
@@ -341,7 +341,7 @@ MetricGroup distance_group() {
 
 std::vector<MetricGroup> metrics() {
   const auto shared = std::make_shared<Shared>();
-  return {region_volume_group(),
+  return {region_volume_group(shared),
           global_volume_group(shared),
           union_volume_group(shared),
           body_union_volume_group(shared),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -11,11 +12,15 @@
 namespace geoprior::skinning {
 namespace {
 
-/// Reach of a joint's swelling, in the mean local radius of its flesh.
+/// Reach of a joint's swelling, and of its shrinking, in the mean local radius of its flesh: what
+/// blended rotations inflate is as wide as the trunk's side under a raised arm.
 constexpr double kSwellingReach = 3;
+constexpr double kShrinkingReach = 5;
 
-/// Largest swelling in that radius.
-constexpr double kLargestSwelling = 0.6;
+/// Largest swelling and shrinking in that radius: what contact took from a deep fold does not all
+/// come out on its other side, which would bulge.
+constexpr double kLargestSwelling = 0.18;
+constexpr double kLargestShrinking = 0.6;
 
 /// How far from the joint rigid skin is watched, in that radius.
 constexpr double kRigidReach = 6;
@@ -141,7 +146,7 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
     std::vector<float> mobility = mobilities(below);
     const double r = radius_of_flesh(mobility, radius, area, state);
     if (!(r > 0)) continue;
-    flesh.largest = kLargestSwelling * r;
+    flesh.radius = r;
     add_rigid_skin(mobility, partition, bone, kRigidReach * r, state);
     for (int f = 0; f < static_cast<int>(rig.mesh.F.rows()); ++f) {
       Triangle triangle{};
@@ -155,12 +160,14 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
       triangle.rest = cone(flesh, triangle, state.rest);
       flesh.triangles.push_back(triangle);
     }
-    const std::vector<float> bump =
-        bump_about(flesh.head, kSwellingReach * r, mobility, rig, state);
+    const auto bump = [&](double reach) {
+      return bump_about(flesh.head, reach * r, mobility, rig, state);
+    };
+    const std::vector<float> grow = bump(kSwellingReach), shrink = bump(kShrinkingReach);
     for (std::size_t s = 0; s < state.size(); ++s) {
-      if (bump[s] > kLeastShare) {
-        flesh.swellings.push_back(
-            {static_cast<int>(s), bump[s], static_cast<float>(area(state.vertex[s])), outward[s]});
+      if (std::max(grow[s], shrink[s]) > kLeastShare) {
+        flesh.swellings.push_back({static_cast<int>(s), grow[s], shrink[s],
+                                   static_cast<float>(area(state.vertex[s])), outward[s]});
       }
     }
     joints_.push_back(std::move(flesh));
@@ -205,29 +212,44 @@ void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
     for (const Triangle& t : flesh.triangles) moved_[t.face] += t.mobility * flesh.turn;
     // Where the bone went, as long as the sine of half the turn.
     const Float4 inner = to_float4((own - parent) * flesh.along / 2);
-    flesh.area = 0;
-    for (Swelling& swelling : flesh.swellings) {
-      const Float4 outward = turned(rotations[swelling.slot], swelling.outward);
-      // Skin of the inner side has nowhere to go.
-      const float inside = std::max(0.0F, dot3(inner, outward));
-      const float share = swelling.share * std::exp(-inside * inside);
-      swelling.way = splat(share) * outward;
-      flesh.area += static_cast<double>(share * swelling.area);
-    }
+    set_ways(flesh, inner, rotations);
+  }
+}
+
+void JointVolumes::set_ways(JointFlesh& flesh, const Float4& inner,
+                            const std::vector<Float4>& rotations) {
+  const float length = std::max(length3(inner), std::numeric_limits<float>::min());
+  flesh.growing = flesh.shrinking = 0;
+  for (Swelling& swelling : flesh.swellings) {
+    const Float4 outward = turned(rotations[swelling.slot], swelling.outward);
+    const float along = dot3(inner, outward);
+    // Skin of the inner side has nowhere to go; too much of it is on the outer side.
+    const float inside = std::max(0.0F, along);
+    const float outside = std::max(0.0F, (1 - along / length) / 2);
+    const float grow = swelling.growing * std::exp(-inside * inside);
+    const float shrink = swelling.shrinking * outside;
+    swelling.grow = splat(grow) * outward;
+    swelling.shrink = splat(shrink) * outward;
+    flesh.growing += static_cast<double>(grow * swelling.area);
+    flesh.shrinking += static_cast<double>(shrink * swelling.area);
   }
 }
 
 bool JointVolumes::restore(std::vector<Float4>& base, std::vector<Float4>& position) {
   bool bends = false;
   for (JointFlesh& flesh : joints_) {
-    if (!flesh.bends || !(flesh.area > 0)) continue;
+    if (!flesh.bends || !(flesh.growing > 0) || !(flesh.shrinking > 0)) continue;
     bends = true;
-    const double missing = lost(flesh, position);
     const double before = flesh.swelling;
-    flesh.swelling = std::clamp(before + missing / flesh.area, -flesh.largest, flesh.largest);
-    const auto more = static_cast<float>(flesh.swelling - before);
+    const double given = before * (before > 0 ? flesh.growing : flesh.shrinking);
+    const double wanted = given + lost(flesh, position);
+    flesh.swelling = std::clamp(wanted / (wanted > 0 ? flesh.growing : flesh.shrinking),
+                                -kLargestShrinking * flesh.radius, kLargestSwelling * flesh.radius);
+    const double now = flesh.swelling;
+    const auto grown = static_cast<float>(std::max(now, 0.0) - std::max(before, 0.0));
+    const auto shrunk = static_cast<float>(std::min(now, 0.0) - std::min(before, 0.0));
     for (const Swelling& swelling : flesh.swellings) {
-      const Float4 way = splat(more) * swelling.way;
+      const Float4 way = splat(grown) * swelling.grow + splat(shrunk) * swelling.shrink;
       base[swelling.slot] += way;
       position[swelling.slot] += way;
     }

@@ -21,7 +21,8 @@ namespace geoprior::skinning {
 /// Skin that moves with one of the two bones turns about c_j, which that bone carries, and leaves
 /// V_j as it is, wherever m_j ends; so what V_j loses, the skin between them has lost. The skin
 /// swells along its smoothed normals by s_j p_j, p_j a bump about the joint that is less on the
-/// inner side, until the loss is none. Depends on the pose alone.
+/// inner side, until the loss is none; where V_j grew, it shrinks by a wider bump that is largest
+/// on the outer side, the one that blended rotations inflate. Depends on the pose alone.
 class JointVolumes {
  public:
   /// @param radius  local, of each slot (m)
@@ -47,10 +48,12 @@ class JointVolumes {
   };
   struct Swelling {
     int slot;
-    float share;       ///< p_j
+    float growing;     ///< p_j
+    float shrinking;   ///< the same where V_j grew
     float area;        ///< at rest (m^2)
     Float4 outward{};  ///< unit, at rest
-    Float4 way{};      ///< posed, for s_j = 1
+    Float4 grow{};     ///< posed, for s_j = 1
+    Float4 shrink{};   ///< posed, for s_j = -1, negated
   };
   struct JointFlesh {
     int joint = 0;
@@ -59,8 +62,9 @@ class JointVolumes {
     Eigen::Vector3d along;  ///< unit, of the joint's bone at rest
     std::vector<Triangle> triangles;
     std::vector<Swelling> swellings;
-    double area = 0;        ///< dV_j / ds_j of skin that swells freely (m^2)
-    double largest = 0;     ///< of s_j (m)
+    double growing = 0;     ///< dV_j / ds_j of skin that swells freely (m^2)
+    double shrinking = 0;   ///< of skin that shrinks (m^2)
+    double radius = 0;      ///< mean local radius of the skin that the joint moves (m)
     double swelling = 0;    ///< s_j (m)
     Float4 place{};         ///< c_j, as the joint carries it
     Float4 parent_place{};  ///< as the parent's bone does: elsewhere if a joint between them moves
@@ -73,6 +77,11 @@ class JointVolumes {
                     const std::vector<Float4>& position);
   /// V_j at rest less V_j (m^3).
   [[nodiscard]] double lost(const JointFlesh& flesh, const std::vector<Float4>& position);
+
+  /// How the skin about a joint swells and shrinks in a pose.
+  /// @param inner  way that the bone went, as long as the sine of half its turn
+  static void set_ways(JointFlesh& flesh, const Float4& inner,
+                       const std::vector<Float4>& rotations);
 
   std::vector<JointFlesh> joints_;
   std::vector<float> moved_;  // per face: sum of the joints' mobility times their turn

@@ -7,6 +7,7 @@
 #include "core/geometry/procedural.h"
 #include "experiments/skinning/scene/scene.h"
 #include "experiments/skinning/topic.h"
+#include "metrics/volume/volume.h"
 #include "tests/testbed/runner/metric_table.h"
 
 namespace geoprior::skinning {
@@ -119,6 +120,32 @@ TEST_F(BentTube, OverlapOfTheWholeBodyIsThatOfItsOnlyRegion) {
   EXPECT_NEAR(value("volume_change_union_body", deep).value(),
               value("volume_change_global", deep).value() - body / rest, 1e-9);
   EXPECT_LT(value("volume_change_union", deep).value(), value("volume_change", deep).value());
+}
+
+TEST_F(BentTube, VolumeIsOfTheBodyOverTheRegion) {
+  // Skin that slides along the tube changes nothing, though the border of the region goes with it.
+  const JointRegion& region = scene.regions.front();
+  const TriMesh& mesh = scene.rig.mesh;
+  const double rest = region_volume(mesh.V, mesh.F, region);
+  Frame moved = posed(0);
+  Eigen::MatrixX3d& points = moved.parts["surface"].points;
+  const double half = CylinderOptions().half_length;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double t = std::clamp(points(v, 0) / half, -1.0, 1.0);
+    points(v, 0) += 0.1 * half * (1 - t * t) * (1 + t);
+  }
+  EXPECT_NEAR(value("volume_change", moved).value(), 0, 1e-12);
+  EXPECT_GT(region_volume(points, mesh.F, region) / rest, 1.01);
+  // A tube that is wider by a tenth gains 0.21 of all of it.
+  points.rightCols<2>() *= 1.1;
+  const double gain = 0.21 * signed_volume(mesh.V, mesh.F);
+  EXPECT_NEAR(value("volume_change", moved).value(), gain / rest, 1e-9);
+  EXPECT_NEAR(value("volume_change_union", moved).value(), gain / rest, 1e-6);
+  // Of an open mesh the region's own is left.
+  scene.rig.mesh.F.conservativeResize(mesh.F.rows() - 1, 3);
+  EXPECT_NE(value("volume_change", moved), gain / rest);
+  EXPECT_TRUE(value("volume_change", moved).has_value());
+  EXPECT_FALSE(value("volume_change_union", moved).has_value());
 }
 
 TEST_F(BentTube, OverlapThatARegionsBoxCutsIsSaid) {
