@@ -12,10 +12,9 @@
 namespace geoprior::skinning {
 namespace {
 
-/// Reach of a joint's swelling, and of its shrinking, in the mean local radius of its flesh: what
-/// blended rotations inflate is as wide as the trunk's side under a raised arm.
-constexpr double kSwellingReach = 3;
-constexpr double kShrinkingReach = 5;
+/// Reach of a joint's swelling, in the mean local radius of its flesh: what blended rotations
+/// inflate under a raised arm is as wide as the trunk's side.
+constexpr double kSwellingReach = 5;
 
 /// Largest swelling and shrinking in that radius: what contact took from a deep fold does not all
 /// come out on its other side, which would bulge.
@@ -160,14 +159,12 @@ JointVolumes::JointVolumes(const RiggedMesh& rig, const BonePartition& partition
       triangle.rest = cone(flesh, triangle, state.rest);
       flesh.triangles.push_back(triangle);
     }
-    const auto bump = [&](double reach) {
-      return bump_about(flesh.head, reach * r, mobility, rig, state);
-    };
-    const std::vector<float> grow = bump(kSwellingReach), shrink = bump(kShrinkingReach);
+    const std::vector<float> bump =
+        bump_about(flesh.head, kSwellingReach * r, mobility, rig, state);
     for (std::size_t s = 0; s < state.size(); ++s) {
-      if (std::max(grow[s], shrink[s]) > kLeastShare) {
-        flesh.swellings.push_back({static_cast<int>(s), grow[s], shrink[s],
-                                   static_cast<float>(area(state.vertex[s])), outward[s]});
+      if (bump[s] > kLeastShare) {
+        flesh.swellings.push_back(
+            {static_cast<int>(s), bump[s], static_cast<float>(area(state.vertex[s])), outward[s]});
       }
     }
     joints_.push_back(std::move(flesh));
@@ -226,8 +223,8 @@ void JointVolumes::set_ways(JointFlesh& flesh, const Float4& inner,
     // Skin of the inner side has nowhere to go; too much of it is on the outer side.
     const float inside = std::max(0.0F, along);
     const float outside = std::max(0.0F, (1 - along / length) / 2);
-    const float grow = swelling.growing * std::exp(-inside * inside);
-    const float shrink = swelling.shrinking * outside;
+    const float grow = swelling.share * std::exp(-inside * inside);
+    const float shrink = swelling.share * outside;
     swelling.grow = splat(grow) * outward;
     swelling.shrink = splat(shrink) * outward;
     flesh.growing += static_cast<double>(grow * swelling.area);

@@ -21,7 +21,7 @@ namespace geoprior::skinning {
 /// Skin that moves with one of the two bones turns about c_j, which that bone carries, and leaves
 /// V_j as it is, wherever m_j ends; so what V_j loses, the skin between them has lost. The skin
 /// swells along its smoothed normals by s_j p_j, p_j a bump about the joint that is less on the
-/// inner side, until the loss is none; where V_j grew, it shrinks by a wider bump that is largest
+/// inner side, until the loss is none; where V_j grew, it shrinks by a bump that is largest
 /// on the outer side, the one that blended rotations inflate. Depends on the pose alone.
 class JointVolumes {
  public:
@@ -48,8 +48,7 @@ class JointVolumes {
   };
   struct Swelling {
     int slot;
-    float growing;     ///< p_j
-    float shrinking;   ///< the same where V_j grew
+    float share;       ///< p_j
     float area;        ///< at rest (m^2)
     Float4 outward{};  ///< unit, at rest
     Float4 grow{};     ///< posed, for s_j = 1
