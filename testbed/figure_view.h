@@ -23,11 +23,13 @@ struct FurtherRow {
   std::optional<std::string> color_by;
   std::vector<std::string> classes;
   std::string labels;
+  std::vector<double> target;  ///< three numbers (m); empty: fitted
   std::array<double, 3> direction{0, 0, 1};
   std::array<double, 3> up{0, 1, 0};
   std::optional<double> height_m;
   std::vector<std::string> overlays;
   std::vector<std::string> variants;  ///< empty: those of the figure; else without their names
+  std::vector<double> parameters;     ///< frames; empty: those of the figure
 };
 
 struct PlanePoint {

@@ -384,6 +384,11 @@ bool all_run(const StudyTable& table, const KnownNames& names, const TomlNode& n
   return all;
 }
 
+void require_point_or_none(const std::vector<double>& point, const std::string& place) {
+  if (point.empty() || point.size() == 3) return;
+  throw Error("has " + std::to_string(point.size()) + " elements", place, "an array of 3 numbers");
+}
+
 }  // namespace
 
 std::vector<StudySpec> read_studies(const TomlNode& root, const Topic& topic,
@@ -470,10 +475,9 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
     plain.erase("at");
     read_options(plain, "figure_view", table);
     read_at(node->find("at"), view.at_parameter, nullptr);
-    if (!table.target.empty() && table.target.size() != 3) {
-      throw Error("has " + std::to_string(table.target.size()) + " elements",
-                  place_of(*node, "target"), "an array of 3 numbers");
-    }
+    require_point_or_none(table.target, place_of(*node, "target"));
+    for (const auto& [key, row] : {std::pair{"above", view.above}, std::pair{"below", view.below}})
+      if (row) require_point_or_none(row->target, place_of(*node, key) + ".target");
     require_count(static_cast<double>(view.parameters.size()), "frames of a figure",
                   kMostFigureFrames, place_of(*node, "parameters"));
     if (view.color_by && view.color_by->empty()) view.color_by.reset();

@@ -173,6 +173,7 @@ void describe(OptionVisitor& v, FurtherRow& t) {
   v.value("color_by", t.color_by, {.doc = "array of the part; absent: plain material"});
   v.value("classes", t.classes, {.doc = "names of the integers 0, 1, … in `color_by`"});
   v.value("labels", t.labels, {.doc = "named array whose names stand beside what has them"});
+  v.value("target", t.target, {.doc = "point looked at; absent: fitted", .unit = "m"});
   v.value("direction", t.direction, {.doc = "direction towards the eye"});
   v.value("up", t.up, {.doc = "upward in the picture"});
   v.value("height_m", t.height_m,
@@ -180,6 +181,7 @@ void describe(OptionVisitor& v, FurtherRow& t) {
   v.value("overlays", t.overlays, {.doc = "further parts drawn over `part`"});
   v.value("variants", t.variants,
           {.doc = "whose part it is, when all have the same; absent: those of the figure"});
+  v.value("parameters", t.parameters, {.doc = "frames; absent: those of the figure"});
 }
 
 void describe(OptionVisitor& v, PlanePoint& t) {
