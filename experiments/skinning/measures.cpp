@@ -158,12 +158,12 @@ double rest_union_volume(Shared& shared, const Measured& m) {
   });
 }
 
-/// Sum of the volumes of all regions, each closed by fans (m^3).
-double rest_volume_of_regions(const Measured& m) {
+/// Over the sum of the rest volumes of all regions, each closed by fans; absent where that is none.
+Value over_regions(double change, const Measured& m) {
   double sum = 0;
   for (const JointRegion& region : m.scene.regions)
     sum += region_volume(m.mesh().V, m.mesh().F, region);
-  return sum;
+  return sum > 0 ? Value(change / sum) : std::nullopt;
 }
 
 }  // namespace
@@ -177,7 +177,7 @@ Value volume_change(Shared& shared, const Measured& m) {
   if (is_closed(shared, m.mesh())) {
     const double change =
         signed_volume(m.posed, m.mesh().F) - signed_volume(m.mesh().V, m.mesh().F);
-    return change / rest_volume_of_regions(m);
+    return over_regions(change, m);
   }
   return relative_change(region_volume(m.mesh().V, m.mesh().F, *m.region()),
                          region_volume(m.posed, m.mesh().F, *m.region()));
@@ -192,7 +192,7 @@ Value volume_change_union(Shared& shared, const Measured& m) {
   if (!m.region()) return std::nullopt;
   const Value body = volume_change_union_body(shared, m);
   if (!body) return std::nullopt;
-  return *body * rest_union_volume(shared, m) / rest_volume_of_regions(m);
+  return over_regions(*body * rest_union_volume(shared, m), m);
 }
 
 Value volume_change_union_body(Shared& shared, const Measured& m) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -27,6 +26,10 @@ constexpr double kRigidReach = 6;
 /// Means over one rings that smooth shares where skin of two bones meets.
 constexpr int kSharePasses = 8;
 constexpr int kNormalPasses = 20;
+
+/// A bone that goes less far, by the sine of half its turn, shrinks skin on all sides alike: it
+/// twists.
+constexpr float kLeastWay = 0.03F;
 
 /// Weights that are none, shares of a swelling that are none, and the mobility of rigid skin.
 constexpr float kLeastWeight = 1e-6F;
@@ -215,12 +218,12 @@ void JointVolumes::set_pose(const FieldComposition& field, const Pose& pose,
 
 void JointVolumes::set_ways(JointFlesh& flesh, const Float4& inner,
                             const std::vector<Float4>& rotations) {
-  const float length = std::max(length3(inner), std::numeric_limits<float>::min());
+  const float length = std::max(length3(inner), kLeastWay);
   flesh.growing = flesh.shrinking = 0;
   for (Swelling& swelling : flesh.swellings) {
     const Float4 outward = turned(rotations[swelling.slot], swelling.outward);
     const float along = dot3(inner, outward);
-    // Skin of the inner side has nowhere to go; too much of it is on the outer side.
+    // Skin of the inner side has nowhere to go; what is too much is on the outer one.
     const float inside = std::max(0.0F, along);
     const float outside = std::max(0.0F, (1 - along / length) / 2);
     const float grow = swelling.share * std::exp(-inside * inside);
