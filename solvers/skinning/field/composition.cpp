@@ -167,7 +167,7 @@ template <class Take>
 void FieldComposition::each_value(std::span<const BoneSample> fields, const Take& take) const {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const BoneSample& child = fields[i];
-    take(Composed{child.f, child.gradient, child.bone});
+    take(Composed{child.f, child.gradient, child.bone}, 1.0F);
     const JointOperator& op = operators_[child.bone];
     const int parent = parent_[child.bone];
     if (parent < 0 || op.is_union()) continue;
@@ -182,7 +182,8 @@ void FieldComposition::each_value(std::span<const BoneSample> fields, const Take
       take(Composed{static_cast<float>(g.value),
                     splat(static_cast<float>(g.d1)) * child.gradient +
                         splat(static_cast<float>(g.d2)) * up.gradient,
-                    child.f > up.f ? child.bone : up.bone});
+                    child.f > up.f ? child.bone : up.bone},
+           static_cast<float>(g.value) - std::max(child.f, up.f));
       break;
     }
   }
@@ -190,7 +191,7 @@ void FieldComposition::each_value(std::span<const BoneSample> fields, const Take
 
 FieldComposition::Composed FieldComposition::compose(std::span<const BoneSample> fields) const {
   Composed result;
-  each_value(fields, [&](const Composed& other) {
+  each_value(fields, [&](const Composed& other, float) {
     if (other.value > result.value) result = other;
   });
   return result;
@@ -201,8 +202,9 @@ FieldComposition::Composed FieldComposition::compose_smoothly(std::span<const Bo
   Composed result = compose(fields);
   Float4 sum{};
   float weights = 0;
-  each_value(fields, [&](const Composed& other) {
-    const float weight = smooth_ramp(result.value - width, result.value, other.value);
+  each_value(fields, [&](const Composed& other, float above) {
+    const float weight =
+        smooth_ramp(result.value - width, result.value, other.value) * smooth_ramp(0, width, above);
     sum += splat(weight) * other.gradient;
     weights += weight;
   });

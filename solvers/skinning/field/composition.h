@@ -101,7 +101,8 @@ class FieldComposition {
   /// @param fields  sorted by bone
   [[nodiscard]] Composed compose(std::span<const BoneSample> fields) const;
   /// The same value with a gradient that does not jump where another bone becomes the largest: the
-  /// mean of all that come within `width` of the value.
+  /// mean of all that come within `width` of the value, a blend as far as it is more than the
+  /// fields that it blends (where an operator is their maximum, its gradient is one or the other).
   [[nodiscard]] Composed compose_smoothly(std::span<const BoneSample> fields, float width) const;
 
   /// What a turn of `rotation` against a bone is about that bone's axis.
@@ -132,7 +133,8 @@ class FieldComposition {
   }
 
  private:
-  /// Calls take(Composed) for every bone and every blend with its parent.
+  /// Calls take(Composed, above) for every bone and every blend with its parent; `above`: how much
+  /// the blend is more than both, 1 of a bone.
   template <class Take>
   void each_value(std::span<const BoneSample> fields, const Take& take) const;
   struct PosedBone {

@@ -50,6 +50,9 @@ constexpr float kOwnDepth = 0.1F;
 /// Fields of bones whose values are no farther apart share the direction of what is asked.
 constexpr float kSameField = 0.05F;
 
+/// Slope of a field, over a local radius, up to which it does not say where the surface is.
+constexpr float kFlat = 0.02F;
+
 /// How far below contact another bone's field begins to silence the own one, in local radii.
 constexpr float kCrowd = 0.5F;
 
@@ -264,11 +267,12 @@ Demand SmoothProjection::section_demand(const SkinState& state, std::size_t slot
       field_.compose_smoothly({own_part.data(), own_count}, kSameField);
   const float slope = length3(all.gradient);
   const float outward_length = length3(outward);
-  if (!(slope * radius > 1e-3F) || !(outward_length > 0)) return {};
+  if (!(slope * radius > kFlat) || !(outward_length > 0)) return {};
   const float agree =
       smooth_ramp(kDisagrees, kAgrees, -dot3(all.gradient, outward) / (slope * outward_length));
-  const float known =
-      smooth_ramp(0.02F, 0.15F, all.value) * (1 - smooth_ramp(0.85F, 0.98F, all.value));
+  const float known = smooth_ramp(kFlat, 5 * kFlat, slope * radius) *
+                      smooth_ramp(0.02F, 0.15F, all.value) *
+                      (1 - smooth_ramp(0.85F, 0.98F, all.value));
   const float free = 1 - crowding(state, slot, at);
   const Float4 n = all.gradient / splat(slope);
   const float before = dot3(n, moved_[slot]);
