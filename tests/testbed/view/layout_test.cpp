@@ -77,14 +77,15 @@ TEST(Blocks, ARowBelowShowsTheOtherSideOfSomeFrames) {
   view.parameters = {0, 90};
   view.below = FurtherRow{};
   view.below->direction = {0, 0, -1};
-  view.below->target = {0.1, 0.2, 0.3};
+  view.below->target = {0.1, 0.2, 0.3};  // its height in the picture
   view.below->height_m = 2;
   view.below->parameters = {90};
   const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0].rows.size(), 2u);
   EXPECT_EQ(blocks[1].rows.size(), 1u);
-  EXPECT_NEAR((blocks[1].look.window.center - Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 0, 1e-12);
+  EXPECT_NEAR(blocks[1].look.window.center.y(), 0.2, 1e-12);
+  EXPECT_DOUBLE_EQ(blocks[1].look.window.height_m, 2);
 }
 
 // Plain panels have neither the colours nor the legend; they are under the others, and beside them
