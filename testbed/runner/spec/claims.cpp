@@ -384,9 +384,18 @@ bool all_run(const StudyTable& table, const KnownNames& names, const TomlNode& n
   return all;
 }
 
-void require_point_or_none(const std::vector<double>& point, const std::string& place) {
-  if (point.empty() || point.size() == 3) return;
-  throw Error("has " + std::to_string(point.size()) + " elements", place, "an array of 3 numbers");
+/// Most frames of a figure, each a row or a column of panels.
+constexpr double kMostFigureFrames = 100;
+
+/// What a figure and a row of another part over or under it may ask for.
+void require_target_and_frames(const std::vector<double>& target,
+                               const std::vector<double>& parameters, const TomlNode& node) {
+  if (!target.empty() && target.size() != 3) {
+    throw Error("has " + std::to_string(target.size()) + " elements", place_of(node, "target"),
+                "an array of 3 numbers");
+  }
+  require_count(static_cast<double>(parameters.size()), "frames of a figure", kMostFigureFrames,
+                place_of(node, "parameters"));
 }
 
 }  // namespace
@@ -459,9 +468,6 @@ std::map<std::string, Tolerance> read_tolerances(const TomlNode& root, const Top
   return tolerances;
 }
 
-/// Most frames of a figure, each a row or a column of panels.
-constexpr double kMostFigureFrames = 100;
-
 FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
   FigureViewTable table(topic.view);
   FigureView& view = table.view;
@@ -475,11 +481,13 @@ FigureView read_figure_view(const TomlNode& root, const Topic& topic) {
     plain.erase("at");
     read_options(plain, "figure_view", table);
     read_at(node->find("at"), view.at_parameter, nullptr);
-    require_point_or_none(table.target, place_of(*node, "target"));
-    for (const auto& [key, row] : {std::pair{"above", view.above}, std::pair{"below", view.below}})
-      if (row) require_point_or_none(row->target, place_of(*node, key) + ".target");
-    require_count(static_cast<double>(view.parameters.size()), "frames of a figure",
-                  kMostFigureFrames, place_of(*node, "parameters"));
+    require_target_and_frames(table.target, view.parameters, *node);
+    for (const auto& [key, row] :
+         {std::pair{"above", view.above}, std::pair{"below", view.below}}) {
+      const TomlNode* table_of_row = node->find(key);
+      if (row && table_of_row != nullptr)
+        require_target_and_frames(row->target, row->parameters, *table_of_row);
+    }
     if (view.color_by && view.color_by->empty()) view.color_by.reset();
     if (!view.classes.empty() && !view.color_by) {
       throw Error("names the values of no array", place_of(*node, "classes"), "with `color_by`");

@@ -336,7 +336,10 @@ FigureView further_view(const FigureView& view, const FurtherRow& row) {
   further.pattern.clear();
   further.expected.reset();
   if (!row.variants.empty()) further.variants = row.variants;
-  if (!row.parameters.empty()) further.parameters = row.parameters;
+  if (!row.parameters.empty()) {
+    further.at_parameter.reset();
+    further.parameters = row.parameters;
+  }
   further.target.reset();
   if (row.target.size() == 3) further.target = {row.target[0], row.target[1], row.target[2]};
   further.section.reset();

@@ -76,6 +76,10 @@ TEST_F(Memory, CasesAreCountedBeforeTheyAreMade) {
 TEST_F(Memory, FramesOfAFigureAreCounted) {
   EXPECT_THAT(error_of("[figure_view]\nparameters = " + first_numbers(101)),
               AllOf(HasSubstr("disc.toml:17:1"), HasSubstr("asks for 101 frames of a figure")));
+  EXPECT_THAT(error_of("[figure_view.below]\nparameters = " + first_numbers(101)),
+              AllOf(HasSubstr("disc.toml:17:1"), HasSubstr("asks for 101 frames of a figure")));
+  EXPECT_THAT(error_of("[figure_view.below]\ntarget = [1, 2]\n"),
+              AllOf(HasSubstr("disc.toml:17:1"), HasSubstr("an array of 3 numbers")));
 }
 
 // Each case kept a copy of the file with all values: 2.8 GB.

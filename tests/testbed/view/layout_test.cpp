@@ -80,6 +80,7 @@ TEST(Blocks, ARowBelowShowsTheOtherSideOfSomeFrames) {
   view.below->target = {0.1, 0.2, 0.3};  // its height in the picture
   view.below->height_m = 2;
   view.below->parameters = {90};
+  view.at_parameter = 0;  // of the figure alone
   const auto blocks = make_blocks(OpenedRun(folder.path, record), view);
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0].rows.size(), 2u);
