@@ -5,7 +5,9 @@
 #include "core/error.h"
 
 namespace geoprior {
+namespace {
 
+/// Vertices are those of the mesh, then the centroid of each border loop.
 TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                        const JointRegion& region) {
   std::size_t fan_triangles = 0;
@@ -28,6 +30,8 @@ TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
   }
   return closed;
 }
+
+}  // namespace
 
 double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                      const JointRegion& region) {

@@ -7,17 +7,14 @@
 
 namespace geoprior {
 
-/// A joint's region as a closed surface: its triangles, and a fan from the centroid of each border
-/// loop to the loop's edges. Vertices are those of the mesh, then one centroid a loop.
-TriMesh region_surface(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
-                       const JointRegion& region);
-
-/// Volume of a joint's region: of `region_surface` (m^3).
+/// Volume of a joint's region: of its triangles, and a fan from the centroid of each border loop to
+/// the loop's edges (m^3).
 ///
-/// Exact to round-off for the closed surface so made. Because the loops lie where the skin moves
-/// with one bone, the fans move rigidly and a change of this volume is one of the skin between
-/// them. Where a surface overlaps itself the overlap counts twice (read it beside overlap_volume).
-/// The volume of a whole closed mesh is `signed_volume` (core/mesh.h).
+/// Exact to round-off for the closed surface so made. Where the skin at the loops moves with one
+/// bone the fans move rigidly, and a change of this volume is one of the skin between them; with
+/// wide weights it also counts skin that slides over the border. Where a surface overlaps itself
+/// the overlap counts twice (read it beside overlap_volume). The volume of a whole closed mesh is
+/// `signed_volume` (core/mesh.h).
 double region_volume(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                      const JointRegion& region);
 
