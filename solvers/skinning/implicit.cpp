@@ -100,10 +100,8 @@ bool spreads(const ImplicitOptions& options) {
 }
 
 RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition, double width) {
-  Eigen::VectorXd radius = local_radii(rig, partition);
-  const double mean = radius.sum() / static_cast<double>((radius.array() > 0).count());
-  radius = (radius.array() > 0).select(radius, mean);
-  return {rig.mesh, rig.skeleton, spread_weights(rig, radius, width)};
+  const Eigen::VectorXd length = spread_lengths(rig, partition);
+  return {rig.mesh, rig.skeleton, spread_weights(rig, length, width)};
 }
 
 BaseKind base_of(const ImplicitOptions& options) {

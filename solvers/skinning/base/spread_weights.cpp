@@ -22,10 +22,10 @@ struct Largest {
 
 }  // namespace
 
-SkinWeights spread_weights(const RiggedMesh& rig, const Eigen::VectorXd& radius, double width) {
+SkinWeights spread_weights(const RiggedMesh& rig, const Eigen::VectorXd& length, double width) {
   const Eigen::VectorXd area = vertex_areas(rig.mesh);
   const double least_area = std::max(area.maxCoeff() * 1e-9, 1e-300);
-  const Eigen::VectorXd mass = area.cwiseMax(least_area).cwiseQuotient(radius.cwiseAbs2());
+  const Eigen::VectorXd mass = area.cwiseMax(least_area).cwiseQuotient(length.cwiseAbs2());
   const ImplicitSmoothing smoothing(rig.mesh, mass, width * width / kSteps, kSteps);
 
   const Eigen::SparseMatrix<double> by_joint = rig.weights;

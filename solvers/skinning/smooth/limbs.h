@@ -25,6 +25,11 @@ std::vector<float> limb_shares(const RiggedMesh& rig, const BonePartition& parti
 /// one.
 Eigen::VectorXd local_radii(const RiggedMesh& rig, const BonePartition& partition);
 
+/// Lengths over which the weights of each vertex spread, times a width (m): its local radius (the
+/// mean of all without a bone), but less on a limb that is short for its thickness, as a phalanx:
+/// else two of its joints would bend as one.
+Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& partition);
+
 /// Means over one rings, `passes` times.
 void smooth_values(std::vector<float>& values, const SkinState& state, int passes);
 

@@ -8,6 +8,7 @@
 #include "solvers/skinning/base/base_skin.h"
 #include "solvers/skinning/base/spread_weights.h"
 #include "solvers/skinning/implicit.h"
+#include "solvers/skinning/smooth/limbs.h"
 #include "tests/skinning/fixtures.h"
 
 namespace geoprior::skinning {
@@ -60,6 +61,29 @@ TEST(SpreadWeights, AreThoseOfAFinerMesh) {
   const SkinWeights one = spread(coarse), other = spread(fine);
   for (const double x : {-0.08, -0.04, 0.0, 0.04, 0.08})
     EXPECT_NEAR(upper_weight(coarse, one, x), upper_weight(fine, other, x), 0.02) << x;
+}
+
+/// Of a tube whose bones are `slimness` times its radius long, at its joint, in radii.
+double spread_length(double slimness) {
+  CylinderOptions options = fixtures::fine_cylinder_options(24, 20);
+  options.half_length = slimness * options.radius;
+  options.cap_height = 0.2 * options.radius;
+  const RiggedMesh rig = two_bone_cylinder(options);
+  const BonePartition partition = partition_bones(rig, PartitionRule::highest_weight, 1);
+  const Eigen::VectorXd length = spread_lengths(rig, partition);
+  Eigen::Index middle = 0;
+  rig.mesh.V.col(0).cwiseAbs().minCoeff(&middle);
+  return length(middle) / options.radius;
+}
+
+// Joints of a phalanx are too near to each other for the width that a knee has.
+TEST(SpreadLengths, AreTheRadiusButLessOnShortLimbs) {
+  EXPECT_NEAR(spread_length(8), 1, 0.02);
+  EXPECT_NEAR(spread_length(5), 1, 0.02);
+  EXPECT_NEAR(spread_length(3), 0.2, 0.02);
+  EXPECT_GT(spread_length(3.7), 0.3);
+  EXPECT_LT(spread_length(3.7), 0.9);
+  EXPECT_NEAR(spread_length(1.5), 1, 0.02);
 }
 
 TEST(BaseSkin, IsCentersOfRotationOnTheTrunkAndDualQuaternionsOnLimbs) {
