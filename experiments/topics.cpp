@@ -1,3 +1,4 @@
+#include "testbed/external/method.h"
 #include "testbed/topic.h"
 
 /// Every topic of the program, in the order in which they are listed: one line each. CMake has the
@@ -28,6 +29,7 @@ std::vector<Topic> all_topics() {
 #define GEOPRIOR_ADD(name) \
   if constexpr (GEOPRIOR_HAS_##name) topics.push_back(name::make_topic());
   GEOPRIOR_TOPICS(GEOPRIOR_ADD)
+  for (Topic& topic : topics) add_external_method(topic);
   return topics;
 }
 

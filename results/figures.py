@@ -17,6 +17,7 @@ from pathlib import Path
 
 import citations
 import claimed
+import cost_control
 import error_time
 import findings
 import pages
@@ -69,7 +70,7 @@ def check(root):
     texts, sources = page_texts(root), pages.read_sources(root)
     found = [line for page, text in texts.items() for line in pages.differences(page, text, sources)]
     found += unshown(texts, sources.records) + pictures.problems(texts, sources.records, root)
-    found += error_time.problems(root, sources.records)
+    found += error_time.problems(root, sources.records) + cost_control.problems(root, sources.records)
     found += citations.problems(root) + findings.problems(texts)
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return 1 if found else 0
@@ -82,7 +83,7 @@ def rewrite(root):
         if made != text:
             runfile.write_atomically(root / page, made)
             print(page)
-    for path in error_time.write(root, sources.records):
+    for path in [*error_time.write(root, sources.records), *cost_control.write(root, sources.records)]:
         print(path)
     return 0
 

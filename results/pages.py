@@ -4,8 +4,8 @@
                                                              experiment file, or quoted (settings.py)
     <!-- begin: KIND … --> … <!-- end -->                    lines that are generated
 
-KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE…]`, `options TOPIC`, or `table`
-followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
+KIND is `overview`, `headline ID`, `claims ID`, `times ID[@CASE]`, `figure ID [FILE…]`, `options TOPIC`, `replicability`,
+`cost-control`, or `table` followed by the rows of a table whose cells have {EXPRESSION} in the place of numbers.
 """
 
 import json
@@ -14,7 +14,9 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+import cost_control
 import expressions
+import replicability
 import settings
 from expressions import ExpressionError
 from prose import without_code
@@ -184,8 +186,12 @@ def block_lines(source, sources):
             return times_of_place(argument, sources.records)
         case "options", True:
             return option_rows(sources, argument)
+        case "replicability", False:
+            return replicability.lines(sources.records, sources.root)
+        case "cost-control", False:
+            return cost_control.lines(sources.records)
     raise ExpressionError(f"unknown block '{first}' (there are overview, headline ID, claims ID, "
-                          "times ID[@CASE], figure ID, options TOPIC, table)")
+                          "times ID[@CASE], figure ID, options TOPIC, replicability, cost-control, table)")
 
 
 # Pages

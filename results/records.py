@@ -135,6 +135,12 @@ def published_study(study, run):
     return made
 
 
+def processor_time(run):
+    """Seconds of the processor that the whole run took, where it recorded them."""
+    seconds = run.provenance.get("processor_s")
+    return {"processor_s": rounded(float(seconds), 4)} if seconds else {}
+
+
 def record_of(run, quoted):
     """What the run publishes, as the JSON object that its file holds."""
     if run.quick:
@@ -147,7 +153,7 @@ def record_of(run, quoted):
         "schema_version": SCHEMA_VERSION, "experiment": run.experiment_id, "title": run.title,
         "figure": run.figure, "command": f"geoprior run {run.experiment_id}", "source": "run.h5",
         "commit": run.provenance.get("git_commit", "unknown"), "content_sha256": run.content_sha256,
-        "processor": run.provenance.get("cpu", "unknown"), "sizes": sizes(run),
+        "processor": run.provenance.get("cpu", "unknown"), **processor_time(run), "sizes": sizes(run),
         "failures": tables.failures(run), "cases": [case.name for case in run.cases],
         "claims": [published_claim(c) for c in run.claims],
         "studies": {s.name: published_study(s, run) for s in run.studies},
@@ -216,6 +222,7 @@ class Record:
     ratios: dict
     units: dict[str, str]
     values: dict
+    processor_s: float = math.nan  # of the whole run, claims' cases too
 
     def claim_words(self):
         """What its claims come to."""
@@ -246,7 +253,7 @@ def read_record(path):
                                            "processor", "sizes", "failures", "cases", "times",
                                            "ratios", "units", "values")}
         return Record(
-            experiment_id=data["experiment"], **same,
+            experiment_id=data["experiment"], **same, processor_s=present(data.get("processor_s")),
             claims=[Claim(**c | {side: present(c.get(side, math.nan)) for side in ("left", "right")})
                     for c in data["claims"]],
             studies=[Study(name, s["kind"], s["quantity"], *(present(s[k]) for k in ("value", "low", "high")),

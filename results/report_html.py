@@ -5,7 +5,7 @@ import html
 from pathlib import Path
 
 import runfile
-from wording import printable
+from geoprior_results.texts import printable
 
 # What a page holds at most: what is beyond stays in run.h5, and the page says so where it was cut.
 MOST_CHARACTERS = 2000        # of a text

@@ -1,7 +1,6 @@
 """Names, units and numbers as a reader wants them: shared by plots, summary and report."""
 
 import math
-import unicodedata
 
 UNIT_SYMBOLS = {"deg": "°", "1": "", "m^2": "m²", "m^3": "m³"}
 
@@ -21,14 +20,6 @@ WORDS = {
     "dcone": "d-cone", "rms": "RMS", "p05": "(5 %)", "p95": "(95 %)", "hausdorff": "Hausdorff",
     "gauss": "Gauss", "dirichlet": "Dirichlet",
 }
-
-
-def printable(text):
-    """The text without what neither a page nor a terminal can show: bytes that were no UTF-8 and
-    control characters but line ends and tabs become `\\xNN`."""
-    text = text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-    return "".join(f"\\x{ord(c):02x}" if unicodedata.category(c) == "Cc" and c not in "\n\t" else c
-                   for c in text)
 
 
 def null_words(claim):

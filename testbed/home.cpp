@@ -27,24 +27,46 @@ std::optional<fs::path> home_above(fs::path folder) {
   }
 }
 
-}  // namespace
-
-fs::path geoprior_home() {
+/// GEOPRIOR_HOME, else what the running program belongs to.
+Home current_home() {
   if (const char* chosen = std::getenv("GEOPRIOR_HOME"); chosen != nullptr && *chosen != '\0') {
     if (!is_home(chosen)) {
       throw Error("no folder with experiments/ and results/ in it",
                   "GEOPRIOR_HOME=" + std::string(chosen), "the clone");
     }
-    return fs::absolute(chosen).lexically_normal();
+    return {fs::absolute(chosen).lexically_normal()};
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const auto home = error ? std::nullopt : home_above(program.parent_path());
-  if (!home) {
-    throw Error("no folder above it has experiments/ and results/", program.string(),
-                "set the environment variable GEOPRIOR_HOME to the clone");
+  return home_of(fs::read_symlink("/proc/self/exe"));
+}
+
+/// The folder for a user's data, as the XDG base directory specification has it: a path that is
+/// not absolute counts as none.
+fs::path user_data_folder() {
+  if (const char* chosen = std::getenv("XDG_DATA_HOME"); chosen != nullptr && *chosen == '/') {
+    return chosen;
   }
-  return *home;
+  if (const char* user = std::getenv("HOME"); user != nullptr && *user == '/') {
+    return fs::path(user) / ".local" / "share";
+  }
+  throw Error("there is no folder for what is written: HOME is not set", "an installed program",
+              "set HOME, XDG_DATA_HOME or GEOPRIOR_RUNS to a folder");
+}
+
+}  // namespace
+
+Home home_of(const fs::path& program) {
+  const fs::path shared = program.parent_path().parent_path() / "share" / "geoprior";
+  if (is_home(shared)) return {shared, true};
+  if (const auto clone = home_above(program.parent_path())) return {*clone};
+  throw Error("no folder above it has experiments/ and results/", program.string(),
+              "set the environment variable GEOPRIOR_HOME to the clone");
+}
+
+fs::path geoprior_home() { return current_home().folder; }
+
+fs::path writable_home() {
+  const Home home = current_home();
+  return home.installed ? user_data_folder() / "geoprior" : home.folder;
 }
 
 fs::path find_file(const std::string& name, const fs::path& folder, const fs::path& of_clone,

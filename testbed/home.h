@@ -5,8 +5,23 @@
 
 namespace geoprior {
 
-/// Root of the clone: where experiments/ and results/ are found, above the executable.
+/// A folder with experiments/, data/ and results/: a clone, or what was installed.
+struct Home {
+  std::filesystem::path folder;
+  bool installed = false;  ///< it belongs to the system: nothing is written there
+};
+
+/// The home of a program: <prefix>/share/geoprior of <prefix>/bin/geoprior, else the clone above
+/// it.
+/// @throws Error  when there is neither
+Home home_of(const std::filesystem::path& program);
+
+/// What is read: GEOPRIOR_HOME, else the home of the running program.
 std::filesystem::path geoprior_home();
+
+/// Where results/runs and data/banks are written: the same folder, but of an installed program the
+/// user's own, $XDG_DATA_HOME/geoprior (~/.local/share/geoprior). It need not exist.
+std::filesystem::path writable_home();
 
 /// A file named in an experiment: absolute, relative to the folder of the experiment's file, or to
 /// a folder of the clone ("data").

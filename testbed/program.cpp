@@ -11,7 +11,10 @@
 #include "core/limits.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
+#include "testbed/commands/doctor/doctor.h"
 #include "testbed/commands/message_line.h"
+#include "testbed/commands/shell/shell_commands.h"
+#include "testbed/commands/start/new_external.h"
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/spec/spec.h"
@@ -29,6 +32,7 @@ constexpr const char* kFooter = R"(Examples:
   geoprior check --quick
   geoprior bless skinning/knee --reason "sample caps by area, thesis 3.1"
   geoprior report skinning/knee
+  geoprior compare RUN_FOLDER skinning/knee
 
 Exit codes: 0 done; 1 a check or a claim fell short; 2 wrong use, bad input, or stopped by Ctrl-C
 (the run can be resumed); 3 internal error.)";
@@ -38,18 +42,22 @@ struct CommandLine {
   CLI::App app{"Geometric priors beside their baselines: scenes, methods, metrics, recorded runs",
                "geoprior"};
   bool json = false;
+  bool allow_commands = false;
   bool list_claims = false;
   std::string described;
+  std::string shell;  ///< that a completion script is for
   bool markdown = false;
   RunRequest run;
   bool no_pictures = false;
   MeasureRequest measure;
   CheckRequest check;
   BlessRequest bless;
+  CompareRequest compare;
   RenderRequest render;
   VideoRequest video;
   ReportRequest report;
   ExportRequest exported;
+  NewRequest begun;
   std::vector<TopicCommandRequest> of_topics;
 };
 
@@ -57,6 +65,12 @@ CLI::App* add_command(CommandLine& line, const std::string& name, const std::str
   CLI::App* command = line.app.add_subcommand(name, what);
   command->add_flag("--json", line.json, "results as JSON on standard output");
   return command;
+}
+
+/// Lets variants of the method "external" start their programs.
+void add_allow_commands(CommandLine& line, CLI::App& command) {
+  command.add_flag("--allow-commands", line.allow_commands,
+                   "let the experiment start the programs that it names");
 }
 
 /// An experiment that stands among values of an option is none of them.
@@ -95,6 +109,7 @@ void add_run(CommandLine& line) {
   run->add_option("--out", request.out, "folder of the run")->type_name("DIR");
   run->add_flag("--resume", request.resume, "go on with an interrupted run");
   run->add_flag("--no-pictures", line.no_pictures, "numbers only: no figure.png, no report");
+  add_allow_commands(line, *run);
   run->add_flag("--table", request.table, "print the table of all numbers (summary.md has it too)");
 }
 
@@ -124,11 +139,13 @@ void add_checks(CommandLine& line) {
                    "at most so many threads for each; 0: all. Runs are the same")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
+  add_allow_commands(line, *check);
   CLI::App* bless = add_command(line, "bless", "make a run's values the reference values");
   bless->add_option("experiment", line.bless.id, "identifier or file")->required();
   bless->add_option("--reason", line.bless.reason, "why the new values are right")
       ->required()
       ->type_name("TEXT");
+  add_allow_commands(line, *bless);
   bless->add_flag("--quick", line.bless.quick, "the values of quick runs");
   bless
       ->add_option("--rows", line.bless.rows,
@@ -146,14 +163,38 @@ void add_force(CLI::App& command, Unverified& unverified) {
       "use files whose checksums are missing or wrong, and say which");
 }
 
+void add_compare(CommandLine& line) {
+  const std::string what = "folder, run.h5, or experiment (its newest run)";
+  CompareRequest& request = line.compare;
+  CLI::App* compare = add_command(
+      line, "compare", "what changed between two runs: metrics, claims, pictures and times");
+  compare->add_option("before", request.before, what)->required();
+  compare->add_option("after", request.after, what)->required();
+  compare->add_flag("--common", request.common,
+                    "runs of different specifications: compare what both have");
+  compare
+      ->add_option("--variants", request.variants,
+                   "only variant A of the first run, with variant B of the second (A=B,C=D)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("A=B");
+  compare
+      ->add_option("--out", request.out,
+                   "folder of compare.html and compare.md; absent: one in that of the second run")
+      ->type_name("DIR");
+  add_force(*compare, request.unverified);
+}
+
 void add_views(CommandLine& line) {
   const std::string what = "folder, run.h5, or experiment (its newest run)";
   CLI::App* render = add_command(line, "render", "draw figure.png of a run");
   render->add_option("run", line.render.run, what)->required();
-  render->add_option("--view", line.render.view, "experiment whose [figure_view] is drawn instead");
+  render->add_option("--view", line.render.view, "experiment whose [figure_view] is drawn instead")
+      ->type_name("EXPERIMENT");
   CLI::App* video = add_command(line, "video", "draw every frame of a run; a video with ffmpeg");
   video->add_option("run", line.video.run, what)->required();
-  video->add_option("--view", line.video.view, "experiment whose [figure_view] is drawn instead");
+  video->add_option("--view", line.video.view, "experiment whose [figure_view] is drawn instead")
+      ->type_name("EXPERIMENT");
   video
       ->add_option("--fps", line.video.frames_per_second,
                    "frames a second; absent: real time with a sound, else 25")
@@ -170,14 +211,37 @@ void add_views(CommandLine& line) {
   report->add_option("--out", line.report.out, "the page")->type_name("FILE");
   CLI::App* exported = add_command(line, "export", "write the frames of a run for other programs");
   exported->add_option("run", line.exported.run, what)->required();
-  exported->add_option("--format", line.exported.format, "obj, ply or glb (animated)")
+  exported
+      ->add_option("--format", line.exported.format,
+                   "vtp (all that the metrics see), obj, ply or glb (animated)")
       ->required()
-      ->check(CLI::IsMember({"obj", "ply", "glb"}));
+      ->check(CLI::IsMember({"vtp", "obj", "ply", "glb"}));
   exported->add_option("--out", line.exported.out, "folder")->type_name("DIR");
   add_force(*render, line.render.unverified);
   add_force(*video, line.video.unverified);
   add_force(*report, line.report.unverified);
   add_force(*exported, line.exported.unverified);
+}
+
+/// What says what the machine has, and what the commands say of themselves, for others to read.
+void add_installation(CommandLine& line) {
+  add_command(line, "doctor", "what of the machine is there or missing, and what each is for");
+  CLI::App* completion = line.app.add_subcommand(
+      "completion", "a script that completes commands and names, on stdout");
+  completion->add_option("shell", line.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  line.app.add_subcommand("manual", "the manual page, for man -l, on stdout");
+}
+
+void add_new(CommandLine& line) {
+  CLI::App* begun = add_command(line, "new", "a folder to begin a method of your own with");
+  begun->add_option("kind", line.begun.kind, "external: a program of any language")
+      ->required()
+      ->check(CLI::IsMember({"external"}));
+  begun->add_option("topic", line.begun.topic, "whose scenes and metrics are meant")->required();
+  begun->add_option("--out", line.begun.out, "the folder; absent: my-<topic>-method")
+      ->type_name("DIR");
 }
 
 /// "unit_m" as a flag: "--unit-m".
@@ -233,12 +297,15 @@ void build(CommandLine& line, const std::vector<Topic>& topics) {
   add_run(line);
   add_measure(line);
   add_checks(line);
+  add_compare(line);
   add_views(line);
+  add_installation(line);
+  add_new(line);
   add_topic_commands(line, topics);
 }
 
 int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
-  const CommandContext context{topics, line.json};
+  const CommandContext context{topics, line.json, line.allow_commands};
   const std::string command = line.app.get_subcommands().front()->get_name();
   line.run.pictures = line.measure.pictures = !line.no_pictures;
   if (command == "list") {
@@ -246,12 +313,19 @@ int dispatch(CommandLine& line, const std::vector<Topic>& topics) {
   }
   if (command == "describe") return describe_command(context, line.described, line.markdown);
   if (command == "run") return run_command(context, line.run);
+  if (command == "new") return new_command(context, line.begun);
   if (command == "measure") return measure_command(context, line.measure);
   if (command == "check") return check_command(context, line.check);
   if (command == "bless") return bless_command(context, line.bless);
+  if (command == "compare") return compare_command(context, line.compare);
   if (command == "render") return render_command(context, line.render);
   if (command == "video") return video_command(context, line.video);
   if (command == "report") return report_command(context, line.report);
+  if (command == "doctor") return doctor_command(context);
+  if (command == "completion") {
+    return completion_command(context, command_tree(line.app), line.shell);
+  }
+  if (command == "manual") return manual_command(command_tree(line.app));
   for (const TopicCommandRequest& request : line.of_topics) {
     if (command == request.command->name) return topic_command(context, request);
   }

@@ -29,6 +29,15 @@ const MetricGroup& group_of(const Topic& topic, const MetricEntry& row) {
   throw Error("is in no group", "metric '" + row.name + "'");
 }
 
+const MethodEntry& method_of(const Topic& topic, const std::string& name) {
+  std::string allowed;
+  for (const MethodEntry& entry : topic.methods) {
+    if (entry.name == name) return entry;
+    allowed += (allowed.empty() ? "" : ", ") + entry.name;
+  }
+  throw Error("unknown method '" + name + "'", "topic '" + topic.name + "'", allowed);
+}
+
 const MetricEntry* find_metric(const Topic& topic, const std::string& name) {
   for (const MetricEntry& row : metric_rows(topic)) {
     if (row.name == name) return &row;

@@ -22,6 +22,16 @@
 
 namespace geoprior {
 
+/// What a part of every frame has to be, whoever makes the frame: metrics rely on it.
+struct PartShape {
+  std::string part;
+  Part::Kind kind = Part::Kind::triangles;
+  /// Vertices that the part has, each at its index; absent: as many as the method likes.
+  std::optional<Eigen::Index> vertices = {};
+  /// Triangles that it has, where the vertices are given; frames from outside may come without.
+  Eigen::MatrixX3i triangles = {};
+};
+
 /// The typed scene of a topic, seen by the runner.
 class Scene {
  public:
@@ -43,6 +53,12 @@ class Scene {
   /// that is added here too.
   /// @throws Error  when one cannot be made: the variant has failed
   [[nodiscard]] virtual std::vector<Artifact> files_of(Frame& /*frame*/) const { return {}; }
+  /// What a program from outside is given of the scene beside its options and input files: geometry
+  /// at rest and tables, for the folder that the method "external" writes. The parameter means
+  /// nothing.
+  [[nodiscard]] virtual Frame given() const { return {}; }
+  /// Parts that every frame must have. Frames from outside are held against it.
+  [[nodiscard]] virtual std::vector<PartShape> frame_shape() const { return {}; }
   /// False where methods may do the work of several frames in one: times are compared by whole
   /// runs.
   [[nodiscard]] virtual bool frames_share_work() const { return true; }
@@ -76,6 +92,25 @@ class TypedOptions final : public OptionSet {
   Options options;
 };
 
+class FrameFiles;
+struct VariantRecord;
+
+/// What a method that works outside of the program has to know of its place in a run.
+struct MethodSite {
+  std::string topic;
+  std::string experiment_id;
+  std::filesystem::path folder;  ///< of the experiment file
+  std::filesystem::path work;    ///< of this variant inside the run; not there yet
+  std::string case_name;
+  std::string variant;
+  std::uint64_t seed = 1;
+  std::string scene_json;  ///< resolved options of the scene
+  /// What was recorded of the variant that this one names as its reference, and its files; null
+  /// when it names none, or that was left out.
+  const VariantRecord* reference = nullptr;
+  const FrameFiles* files = nullptr;
+};
+
 /// One row of a topic's method table.
 struct MethodEntry {
   using Instance = std::variant<std::unique_ptr<PoseMethod>, std::unique_ptr<Process>>;
@@ -88,6 +123,14 @@ struct MethodEntry {
   /// @throws NotApplicable  where the method is not for the scene: its variant fails alone
   std::function<Instance(const Scene&, const OptionSet&, RunContext&)> make;
   std::string ungated = {};  ///< why its results do not repeat: `check` does not compare them
+  /// In place of `make`, of a method that works outside of the program.
+  std::function<Instance(const MethodSite&, const Scene&, const OptionSet&, RunContext&)> make_at =
+      {};
+  /// The program that such a method would start, with its arguments; empty or absent: none.
+  std::function<std::string(const OptionSet&)> starts = {};
+  /// Files that it reads at such a site, for the record; absent: none.
+  std::function<std::vector<std::filesystem::path>(const MethodSite&, const OptionSet&)> inputs =
+      {};
   /// What its user should know of these options on this scene: printed and recorded with what was
   /// said of the scene. Absent: nothing, ever.
   std::function<std::vector<std::string>(const Scene&, const OptionSet&)> warnings = {};
@@ -284,6 +327,9 @@ std::vector<std::string> metric_names(const Topic& topic);
 /// The row of that name, null when there is none.
 const DiagnosticEntry* find_diagnostic(const Topic& topic, const std::string& name);
 const MetricEntry* find_metric(const Topic& topic, const std::string& name);
+
+/// The method of that name. @throws Error  naming those that there are
+const MethodEntry& method_of(const Topic& topic, const std::string& name);
 
 /// The group that the row is in.
 const MetricGroup& group_of(const Topic& topic, const MetricEntry& row);

@@ -99,9 +99,14 @@ bool spreads(const ImplicitOptions& options) {
   return options.projection != ProjectionKind::marching && options.smooth.spread > 0;
 }
 
-RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition, double width) {
-  const Eigen::VectorXd length = spread_lengths(rig, partition);
-  return {rig.mesh, rig.skeleton, spread_weights(rig, length, width)};
+/// Tracking loses its way in the tighter folds that narrower weights make of a curled finger: there
+/// short limbs spread as others do.
+RiggedMesh spread_rig(const RiggedMesh& rig, const BonePartition& partition,
+                      const ImplicitOptions& options) {
+  const bool tracks = options.projection == ProjectionKind::tracking;
+  const auto short_limbs = tracks ? ShortLimbs::as_others : ShortLimbs::less;
+  return {rig.mesh, rig.skeleton,
+          spread_weights(rig, spread_lengths(rig, partition, short_limbs), options.smooth.spread)};
 }
 
 BaseKind base_of(const ImplicitOptions& options) {
@@ -275,7 +280,7 @@ ImplicitSkinning::ImplicitSkinning(const RiggedMesh& rig, const ImplicitOptions&
     impl_ = std::make_unique<Impl>(rig, rig, std::move(partition), options, context);
     return;
   }
-  const RiggedMesh skin = spread_rig(rig, partition, options.smooth.spread);
+  const RiggedMesh skin = spread_rig(rig, partition, options);
   impl_ = std::make_unique<Impl>(rig, skin, std::move(partition), options, context);
 }
 

@@ -32,6 +32,7 @@ BlessedRun run_without_clock(const CommandContext& context, Experiment experimen
   ExecuteRequest request;
   request.timing = false;
   request.only_declared = true;
+  request.allow_commands = context.allow_commands;
   request.show_progress = isatty(STDERR_FILENO) == 1;
   const Error stopped("stopped", run.experiment.id, "the same command again");
   request.farewell = [&](const std::filesystem::path&) {

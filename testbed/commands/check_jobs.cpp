@@ -39,10 +39,12 @@ std::vector<std::size_t> longest_first(const std::vector<std::string>& ids, bool
   return order;
 }
 
-std::vector<std::string> job_arguments(const CheckRequest& request, const std::string& id) {
+std::vector<std::string> job_arguments(const CommandContext& context, const CheckRequest& request,
+                                       const std::string& id) {
   std::vector<std::string> words{"check", "--json", "--threads", std::to_string(request.threads)};
   if (request.quick) words.emplace_back("--quick");
   if (request.mutations) words.emplace_back("--mutations");
+  if (context.allow_commands) words.emplace_back("--allow-commands");
   words.insert(words.end(), {"--", id});
   return words;
 }
@@ -95,7 +97,7 @@ int check_in_jobs(const CommandContext& context, const CheckRequest& request,
                   const std::vector<std::string>& ids) {
   install_stop_handler();
   JobArguments jobs;
-  for (const std::string& id : ids) jobs.push_back(job_arguments(request, id));
+  for (const std::string& id : ids) jobs.push_back(job_arguments(context, request, id));
   Findings findings;
   run_jobs(jobs, longest_first(ids, request.quick), request.jobs,
            [&](std::size_t index, const JobResult& result) { findings.add(ids[index], result); });

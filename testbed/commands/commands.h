@@ -18,7 +18,8 @@ enum ExitCode { done = 0, fell_short = 1, wrong_use = 2, internal_error = 3 };
 /// What every command is given.
 struct CommandContext {
   const std::vector<Topic>& topics;
-  bool json = false;  ///< --json: results on stdout
+  bool json = false;            ///< --json: results on stdout
+  bool allow_commands = false;  ///< --allow-commands: variants may start programs
 };
 
 /// Which experiment and how; the overrides make another experiment of the same name.
@@ -65,6 +66,15 @@ struct TopicCommandRequest {
   std::map<std::string, std::string> options;  ///< by key; as written
 };
 
+struct CompareRequest {
+  std::string before;
+  std::string after;
+  bool common = false;                ///< runs of different specifications, where they agree
+  std::vector<std::string> variants;  ///< "a=b": a of the first run with b of the second
+  std::optional<std::string> out;     ///< absent: compare-<hash> in the second run's folder
+  Unverified unverified = Unverified::refused;
+};
+
 struct RenderRequest {
   std::string run;
   std::optional<std::string> view;  ///< experiment file whose [figure_view] is drawn
@@ -100,6 +110,7 @@ int run_command(const CommandContext& context, const RunRequest& request);
 int check_command(const CommandContext& context, const CheckRequest& request);
 int measure_command(const CommandContext& context, const MeasureRequest& request);
 int bless_command(const CommandContext& context, const BlessRequest& request);
+int compare_command(const CommandContext& context, const CompareRequest& request);
 int render_command(const CommandContext& context, const RenderRequest& request);
 int video_command(const CommandContext& context, const VideoRequest& request);
 int report_command(const CommandContext& context, const ReportRequest& request);

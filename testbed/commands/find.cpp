@@ -7,6 +7,7 @@
 #include "testbed/formats/folders.h"
 #include "testbed/formats/input_file.h"
 #include "testbed/runner/run_folder.h"
+#include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
 namespace {

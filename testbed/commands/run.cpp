@@ -101,6 +101,7 @@ int run_command(const CommandContext& context, const RunRequest& request) {
   ExecuteRequest execution;
   if (request.out) execution.out = *request.out;
   execution.resume = request.resume;
+  execution.allow_commands = context.allow_commands;
   execution.grade = true;
   execution.show_progress = isatty(STDERR_FILENO) == 1;
   execution.farewell = [&](const fs::path& folder) { report_stop(context, request, folder); };

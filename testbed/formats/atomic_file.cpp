@@ -163,6 +163,12 @@ std::string read_whole_file(const fs::path& file) {
   }
 }
 
+std::vector<std::byte> bytes_of_file(const fs::path& file) {
+  const std::string text = read_whole_file(file);
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
 void make_folders(const fs::path& folder) {
   std::error_code code;
   if (fs::is_directory(folder, code)) return;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace geoprior {
 
@@ -40,6 +41,7 @@ bool is_temporary_file(const std::filesystem::path& file);
 
 /// The bytes of a file. @throws Error naming it.
 std::string read_whole_file(const std::filesystem::path& file);
+std::vector<std::byte> bytes_of_file(const std::filesystem::path& file);
 
 /// Makes a folder and its parents, flushed to the disk. @throws Error naming it and the reason.
 void make_folders(const std::filesystem::path& folder);

@@ -67,7 +67,8 @@ class ImageCodec {
 /// The codec, from the module of images, which is opened at the first call: OpenImageIO brings
 /// 262 shared objects, 0.2 s of processor time and 120 MB, which who needs no picture does not pay.
 ///
-/// The module is the file `geoprior_images.so` in the folder of the running program. It stays open.
+/// The module is the file `geoprior_images.so` in the folder of the running program, or in
+/// ../lib/geoprior of it. It stays open.
 /// @throws Error  naming that file: missing, cut off, or no module of images; a later call tries
 ///                again
 const ImageCodec& image_codec();

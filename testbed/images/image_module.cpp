@@ -30,8 +30,16 @@ void require_whole(const fs::path& file) {
   if (fs::file_size(file) < size) throw Error("is cut off", file.string(), kAllowed);
 }
 
+/// Beside the program, or in lib/geoprior beside the bin that it was installed into.
+fs::path module_file() {
+  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path installed = folder.parent_path() / "lib" / "geoprior" / kModule;
+  const bool is_beside = fs::exists(folder / kModule) || !fs::exists(installed);
+  return is_beside ? folder / kModule : installed;
+}
+
 const ImageCodec& open_module() {
-  const fs::path file = fs::read_symlink("/proc/self/exe").parent_path() / kModule;
+  const fs::path file = module_file();
   require_whole(file);
   void* const module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (module == nullptr) {

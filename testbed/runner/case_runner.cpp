@@ -15,16 +15,17 @@
 #include "testbed/runner/spec/scene_place.h"
 
 namespace geoprior {
+
+namespace fs = std::filesystem;
+
 namespace {
 
-const MethodEntry& method_of(const Topic& topic, const std::string& name) {
-  std::string allowed;
-  for (const MethodEntry& entry : topic.methods) {
-    if (entry.name == name) return entry;
-    allowed += (allowed.empty() ? "" : ", ") + entry.name;
-  }
-  throw Error("unknown method '" + name + "'", "topic '" + topic.name + "'", allowed);
-}
+/// A frame from outside that the metrics cannot be measured on: its variant has failed, not the
+/// run.
+class UnmeasurableFrame final : public Error {
+ public:
+  using Error::Error;
+};
 
 const VariantSpec* find_variant(const std::vector<VariantSpec>& variants, const std::string& name) {
   for (const VariantSpec& variant : variants) {
@@ -71,7 +72,10 @@ class CaseRunner::Sink final : public FrameSink {
     earlier_.clear();
     const TimedContext::Pause pause(context_);
     require_finite(frame, runner_.state_of(variant_).record.frames.size(), variant_.method);
-    const std::vector<Artifact> files = runner_.scene_->files_of(frame);
+    // Frames from outside come with their files.
+    const std::vector<Artifact> files = runner_.comes_from_outside(variant_)
+                                            ? std::vector<Artifact>{}
+                                            : runner_.scene_->files_of(frame);
     for (const Artifact& file : files)
       guarded([&] { runner_.recorder_.write_artifact(runner_.place(variant_), file); });
     guarded([&] { runner_.record_frame(variant_, std::move(frame), seconds); });
@@ -106,6 +110,8 @@ class CaseRunner::Sink final : public FrameSink {
   void guarded(Record record) {
     try {
       record();
+    } catch (const UnmeasurableFrame&) {
+      throw;
     } catch (...) {
       failure_ = std::current_exception();
       throw;
@@ -178,6 +184,23 @@ void CaseRunner::load(const OptionSet& options, std::vector<StoredFile> inputs) 
   }
 }
 
+MethodSite CaseRunner::site_of(const VariantSpec& variant) {
+  return {experiment_.topic,
+          experiment_.id,
+          fs::absolute(experiment_.file).parent_path(),
+          path_below(recorder_.folder(), fs::path("external") / spec_.name / variant.name),
+          spec_.name,
+          variant.name,
+          spec_.seed,
+          spec_.scene_json,
+          reference_record(variant),
+          &recorder_.files()};
+}
+
+bool CaseRunner::comes_from_outside(const VariantSpec& variant) const {
+  return static_cast<bool>(method_of(topic_, variant.method).make_at);
+}
+
 MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log) {
   if (const auto found = prepared_.find(variant.name); found != prepared_.end()) {
     return found->second;
@@ -188,9 +211,17 @@ MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log)
   {
     const LeaveAtOnce section(farewell_);
     const Phase phase(context, "prepare");
-    instance = entry.make(*scene_, *variant.options, context);
+    instance = entry.make_at ? entry.make_at(site_of(variant), *scene_, *variant.options, context)
+                             : entry.make(*scene_, *variant.options, context);
   }
-  if (log) recorder_.add(journal::BeginLine{place(variant), context.take_phases()});
+  if (log) {
+    journal::BeginLine line{place(variant), context.take_phases()};
+    if (entry.inputs) {
+      for (const auto& file : entry.inputs(site_of(variant), *variant.options))
+        line.inputs.push_back({input_name(file), sha256_of_file(file)});
+    }
+    recorder_.add(line);
+  }
   return prepared_.emplace(variant.name, std::move(*instance)).first->second;
 }
 
@@ -218,7 +249,8 @@ std::optional<Frame> CaseRunner::reference_frame(const VariantSpec& variant, dou
 void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
                               const journal::Numbers& seconds) {
   const std::size_t index = state_of(variant).record.frames.size();
-  if (only_declared_) require_declared(topic_, frame, variant.method);
+  const bool from_outside = comes_from_outside(variant);
+  if (only_declared_ && !from_outside) require_declared(topic_, frame, variant.method);
   journal::FrameLine line;
   line.place = place(variant);
   line.index = index;
@@ -226,9 +258,13 @@ void CaseRunner::record_frame(const VariantSpec& variant, Frame frame,
   line.files = recorder_.write_frame(line.place, index, frame);
   for (const std::string& name : topic_.looked_at) frame.parts.erase(name);
   const std::optional<Frame> reference = reference_frame(variant, frame.parameter);
-  {
+  try {
     const LeaveAtOnce section(farewell_within_frame(variant));
     line.metrics = measure_frame(topic_, *scene_, frame, reference ? &*reference : nullptr);
+  } catch (const Error& error) {
+    if (!from_outside) throw;
+    recorder_.discard(line.files);
+    throw UnmeasurableFrame(error.what());
   }
   line.diagnostics = frame.diagnostics;
   line.timing = seconds;
@@ -285,9 +321,15 @@ void CaseRunner::finish(const VariantSpec& variant, journal::EndLine line) {
     const auto reference =
         of ? std::optional<RecordedFrames>(std::in_place, recorder_.files(), *of, none)
            : std::nullopt;
-    line.summary = measure_sequence(
-        topic_, *scene_,
-        RecordedFrames(recorder_.files(), record, kept_, reference ? &*reference : nullptr));
+    try {
+      line.summary = measure_sequence(
+          topic_, *scene_,
+          RecordedFrames(recorder_.files(), record, kept_, reference ? &*reference : nullptr));
+    } catch (const Error& error) {
+      if (!comes_from_outside(variant)) throw;
+      line.error = error.what();
+      tell_failure(variant, line.error);
+    }
     kept_ = KeptFrames(kMostKept);
   }
   recorder_.write_collection(line.place);
@@ -442,7 +484,9 @@ bool CaseRunner::time_variants() {
     variants.back().name = state.record.name;
     variants.back().role = state.record.role;
     variants.back().status = state.record.status;
-    variants.back().frames = state.record.frames;
+    // A program that makes all frames at once has no time a frame: whole runs are compared.
+    if (!method_of(topic_, state.record.method).make_at)
+      variants.back().frames = state.record.frames;
   }
   line.ratios = timing_ratios(variants, line.timing, scene_->frames_share_work(), spec_.seed);
   recorder_.add(line);

@@ -22,7 +22,8 @@ namespace geoprior {
 ///
 /// An Error that a process throws after its first frame ends that variant: its frames stay, its
 /// record has the status "failed" with the message, the other variants run. So does a method that
-/// is not for the scene (`NotApplicable`) before its first frame. Any other Error (bad input, a
+/// is not for the scene (`NotApplicable`) before its first frame, and one whose frames come from
+/// outside and cannot be measured. Any other Error (bad input, a
 /// full disk, a metric that cannot be measured) ends the run.
 class CaseRunner {
  public:
@@ -46,6 +47,10 @@ class CaseRunner {
   [[nodiscard]] std::string name_of(const VariantSpec& variant) const {
     return "case '" + spec_.name + "', variant '" + variant.name + "'";
   }
+  [[nodiscard]] MethodSite site_of(const VariantSpec& variant);
+  /// Whether its frames are made outside of the program: what is wrong with them is no error of the
+  /// run.
+  [[nodiscard]] bool comes_from_outside(const VariantSpec& variant) const;
   VariantState& state_of(const VariantSpec& variant) { return state_.variant_of(place(variant)); }
   void load(const OptionSet& options, std::vector<StoredFile> inputs);
   MethodEntry::Instance& prepare(const VariantSpec& variant, bool log);

@@ -22,6 +22,8 @@ struct ExecuteRequest {
   /// A diagnostic that the topic's table lacks is an error (of tests, checks and debug builds);
   /// otherwise it is recorded without a unit.
   bool only_declared = kIsDebugBuild;
+  /// Variants may start programs (docs/security.md); otherwise such an experiment is refused.
+  bool allow_commands = false;
   bool grade = false;  ///< grade the claims (judgement/grades.h), of frames read back
   /// What the program says of the run's folder before a stop request ends it at once, while nothing
   /// is written (`LeaveAtOnce`); absent: it stops at the next consistent state only.

@@ -20,7 +20,8 @@ namespace {
 
 constexpr const char* kRunFile = "run.h5";
 constexpr const char* kAllowed =
-    "the folder of a finished run as it was written; render, video, report and export have --force";
+    "the folder of a finished run as it was written; compare, render, video, report and export "
+    "have --force";
 
 /// More than a line of kind `result` has.
 constexpr std::streamoff kTail = 4096;

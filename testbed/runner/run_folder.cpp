@@ -186,7 +186,7 @@ fs::path runs_root() {
   if (const char* folder = std::getenv("GEOPRIOR_RUNS"); folder != nullptr && *folder != '\0') {
     return folder;
   }
-  return geoprior_home() / "results" / "runs";
+  return writable_home() / "results" / "runs";
 }
 
 fs::path unused_run_folder(const std::string& experiment_id, const std::string& hash) {

@@ -12,7 +12,7 @@
 
 namespace geoprior {
 
-/// Where runs go without --out: $GEOPRIOR_RUNS, else results/runs of the clone.
+/// Where runs go without --out: $GEOPRIOR_RUNS, else results/runs of writable_home().
 std::filesystem::path runs_root();
 
 /// Time of now in UTC, "2025-01-31T12:00:00Z".

@@ -107,6 +107,25 @@ void RunState::apply(const journal::BeginLine& line) {
   VariantState& state = variant_of(line.place);
   state.begun = true;
   state.prepare = line.timing;
+  state.inputs = line.inputs;
+}
+
+void RunState::apply(const journal::RetryLine& line) {
+  VariantState& state = variant_of(line.place);
+  VariantRecord again;
+  again.name = state.record.name;
+  again.method = state.record.method;
+  again.role = state.record.role;
+  again.reference = state.record.reference;
+  again.options_json = state.record.options_json;
+  again.status = "stopped";
+  // Their files go when it is run.
+  again.frames = state.record.frames;
+  again.events = state.record.events;
+  again.artifacts = state.record.artifacts;
+  state = {};
+  state.record = std::move(again);
+  case_of(line.place.case_name).timed = false;
 }
 
 void RunState::apply(const journal::FrameLine& line) {

@@ -14,7 +14,8 @@ namespace geoprior {
 /// How far one variant of one case has come.
 struct VariantState {
   VariantRecord record;  ///< summary: metrics of the sequence only; units are filled in at the end
-  journal::Numbers prepare;  ///< "prepare" and the phases in it, s
+  journal::Numbers prepare;        ///< "prepare" and the phases in it, s
+  std::vector<StoredFile> inputs;  ///< beside the scene's
   bool begun = false;
   bool ended = false;
   std::optional<journal::CheckpointLine> checkpoint;
@@ -49,6 +50,7 @@ class RunState {
   void apply(const journal::RunLine& line);
   void apply(const journal::CaseLine& line);
   void apply(const journal::BeginLine& line);
+  void apply(const journal::RetryLine& line);
   void apply(const journal::FrameLine& line);
   void apply(const journal::EventLine& line);
   void apply(const journal::ArtifactLine& line);

@@ -90,7 +90,11 @@ void begin_run(const Experiment& experiment, Recorder& recorder) {
 std::vector<StoredFile> all_inputs(const RunState& state) {
   std::vector<StoredFile> inputs;
   for (const CaseState& one : state.cases()) {
-    for (const StoredFile& file : one.inputs.value_or(std::vector<StoredFile>{})) {
+    std::vector<StoredFile> of_case = one.inputs.value_or(std::vector<StoredFile>{});
+    for (const VariantState& variant : one.variants) {
+      of_case.insert(of_case.end(), variant.inputs.begin(), variant.inputs.end());
+    }
+    for (const StoredFile& file : of_case) {
       const auto same = [&](const StoredFile& other) {
         return other.name == file.name && other.sha256 == file.sha256;
       };
@@ -201,6 +205,31 @@ void finish(const Experiment& experiment, const std::vector<Topic>& topics, bool
   if (undecided) throw Error(*undecided);
 }
 
+/// Whether another program failed there: it may have been mended since.
+bool failed_outside(const VariantRecord& variant, const Topic& topic) {
+  return variant.status == "failed" && method_of(topic, variant.method).make_at;
+}
+
+bool has_failed_outside(const RunRecord& record, const Topic& topic) {
+  return std::any_of(record.cases.begin(), record.cases.end(), [&](const CaseRecord& one) {
+    return std::any_of(one.variants.begin(), one.variants.end(), [&](const VariantRecord& variant) {
+      return failed_outside(variant, topic);
+    });
+  });
+}
+
+/// Variants that failed outside of the program begin anew.
+void retry_failed(const Topic& topic, RunState& state, Recorder& recorder) {
+  std::vector<journal::Place> places;
+  for (const CaseState& one : state.cases()) {
+    for (const VariantState& variant : one.variants) {
+      if (variant.ended && failed_outside(variant.record, topic))
+        places.push_back({one.record.name, variant.record.name});
+    }
+  }
+  for (const journal::Place& place : places) recorder.add(journal::RetryLine{place});
+}
+
 bool has_results(const RunState& state) {
   return std::any_of(state.cases().begin(), state.cases().end(), [](const CaseState& one) {
     return std::any_of(one.variants.begin(), one.variants.end(), [](const VariantState& variant) {
@@ -219,6 +248,22 @@ void require_one_that_ran(const RunState& state) {
         throw Error(variant.record.error,
                     "case '" + one.record.name + "', variant '" + variant.record.name + "'");
       }
+    }
+  }
+}
+
+/// @throws Error  saying what would be started, unless that is allowed
+void require_allowed_commands(const Experiment& experiment, const Topic& topic,
+                              const ExecuteRequest& request) {
+  if (request.allow_commands) return;
+  for (const CaseSpec& one : experiment.cases) {
+    for (const VariantSpec& variant : one.variants) {
+      const MethodEntry& method = method_of(topic, variant.method);
+      const std::string command = method.starts ? method.starts(*variant.options) : "";
+      if (command.empty()) continue;
+      throw Error("variant '" + variant.name + "' would start: " + command,
+                  experiment.file.string(),
+                  "--allow-commands, after a look at the file and its program");
     }
   }
 }
@@ -251,11 +296,13 @@ void discard(const fs::path& folder, bool chosen_by_us) {
 ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& topics,
                        const ExecuteRequest& request, const InputMaker& make_input) {
   const Topic& topic = topic_of(experiment, topics);
+  require_allowed_commands(experiment, topic, request);
   require_no_circle(experiment, topics);
   ExecuteResult result;
   const RunFolder opened = open_run_folder(experiment, request);
   result.folder = opened.path;
-  if (auto record = finished_record(experiment, result.folder)) {
+  auto record = finished_record(experiment, result.folder);
+  if (record && !has_failed_outside(*record, topic)) {
     say(result.folder.string() + " is finished: nothing to do");
     result.record = std::move(*record);
     result.was_finished = true;
@@ -268,6 +315,7 @@ ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& t
   if (is_new) require_own_beginning(experiment, result.folder);
   try {
     if (is_new) begin_run(experiment, recorder);
+    retry_failed(topic, state, recorder);
     result.stopped = !run_cases(experiment, topics, told_of(result.folder, request), make_input,
                                 recorder, state);
     if (!result.stopped) require_one_that_ran(state);

@@ -1,7 +1,9 @@
 #include "testbed/view/export.h"
 
-// Frames of a run as files of other tools: out/<case>/<variant>/<part>_0000.obj or .ply, or one
-// animated out/<case>/<variant>/<part>.glb, whose nodes are structures where the part has any.
+// Frames of a run as files of other tools, in the layout that the method "external" reads
+// (testbed/external/frame_layout.h): out/<case>/<variant>/frames/<part>_0000.vtp, .obj or .ply with
+// tables, events and artifacts beside them; or one animated out/<case>/<variant>/<part>.glb, whose
+// nodes are structures where the part has any.
 
 #include <algorithm>
 #include <array>
@@ -13,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/mesh.h"
+#include "testbed/external/frame_layout.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/formats/gltf/writer.h"
@@ -27,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kMarker = "geoprior-export.txt";
-const std::vector<std::string> kFormats{"obj", "ply", "glb"};
+const std::vector<std::string> kFormats{"vtp", "obj", "ply", "glb"};
 
 struct FrameFile {
   StoredFile file;
@@ -78,6 +81,13 @@ class ExportFolder {
     return folder;
   }
 
+  /// A folder below it.
+  fs::path room_of(const CaseRecord& c, const VariantRecord& variant, const char* room) {
+    const fs::path folder = path_below(folder_of(c, variant), room);
+    make_folders(folder);
+    return folder;
+  }
+
  private:
   fs::path out_;
   std::string text_;
@@ -93,6 +103,18 @@ std::string describe_frame(const CaseRecord& c, const VariantRecord& variant,
          c.parameter_unit;
 }
 
+/// What stands beside the parts of the frames, and with `as_recorded` these in double precision
+/// with all their arrays. Returns how many parts.
+int export_layout(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
+                  LayoutParts parts, ExportFolder& out) {
+  int written = 0;
+  write_layout(out.folder_of(c, variant), variant, parts, [&](const StoredFile& stored) {
+    written += fs::path(stored.name).extension() == ".csv" ? 0 : 1;
+    return bytes_of_file(run.file(stored));
+  });
+  return written;
+}
+
 /// Returns how many files were written.
 int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord& variant,
                  const std::vector<FrameFile>& frames, const std::string& format,
@@ -105,7 +127,7 @@ int export_texts(const OpenedRun& run, const CaseRecord& c, const VariantRecord&
     const std::string comment = describe_frame(c, variant, frame);
     const std::string text =
         format == "obj" ? part_to_obj(part, comment) : part_to_ply(part, comment);
-    write_file_atomically(out.folder_of(c, variant) / (frame.stem + "." + format),
+    write_file_atomically(out.room_of(c, variant, "frames") / (frame.stem + "." + format),
                           std::string_view(text));
     ++written;
   }
@@ -176,7 +198,7 @@ int export_glb(const OpenedRun& run, const CaseRecord& c, const VariantRecord& v
 
 void export_run(const OpenedRun& run, const std::string& format, const fs::path& out) {
   if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
-    throw Error("unknown format '" + format + "'", "export", "obj, ply, glb");
+    throw Error("unknown format '" + format + "'", "export", "vtp, obj, ply, glb");
   }
   const RunRecord& record = run.record();
   ExportFolder folder(out,
@@ -186,10 +208,20 @@ void export_run(const OpenedRun& run, const std::string& format, const fs::path&
   int written = 0;
   for (const CaseRecord& c : record.cases) {
     for (const VariantRecord& variant : c.variants) {
-      for (const auto& [name, frames] : files_by_part(variant)) {
-        written += format == "glb" ? export_glb(run, c, variant, name, frames, folder)
-                                   : export_texts(run, c, variant, frames, format, folder);
+      int of_variant = 0;
+      if (format == "vtp" && !variant.frames.empty()) {
+        of_variant = export_layout(run, c, variant, LayoutParts::as_recorded, folder);
       }
+      if (format != "vtp") {
+        for (const auto& [name, frames] : files_by_part(variant)) {
+          of_variant += format == "glb" ? export_glb(run, c, variant, name, frames, folder)
+                                        : export_texts(run, c, variant, frames, format, folder);
+        }
+      }
+      if (of_variant > 0 && (format == "obj" || format == "ply")) {
+        export_layout(run, c, variant, LayoutParts::none, folder);
+      }
+      written += of_variant;
     }
   }
   if (written == 0) {

@@ -13,7 +13,7 @@ function(run)
   endif()
 endfunction()
 
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+run(${CMAKE_COMMAND} --install ${BUILD} --component dev --prefix ${prefix})
 # Nothing installed may name the source tree (the prefix lies in it: relative paths only).
 file(GLOB_RECURSE package ${prefix}/lib/*.cmake ${prefix}/include/*.h)
 foreach(file ${package})

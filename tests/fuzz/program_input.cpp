@@ -156,9 +156,11 @@ ProgramInput sculpt_input(const std::string& mutated) {
 
 /// What draws a report: a home has it.
 Files with_scripts(Files home) {
-  for (const auto& entry : fs::directory_iterator(kSource / "results")) {
-    if (!entry.is_regular_file()) continue;
-    home["results/" + entry.path().filename().string()] = read_whole_file(entry.path());
+  for (const char* folder : {"results", "results/geoprior_results"}) {
+    for (const auto& entry : fs::directory_iterator(kSource / folder)) {
+      if (!entry.is_regular_file()) continue;
+      home[(folder / entry.path().filename()).string()] = read_whole_file(entry.path());
+    }
   }
   return home;
 }

@@ -3,11 +3,17 @@ Run with Debian's python3."""
 
 import contextlib
 import io
+import re
 import shutil
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+try:
+    import yaml
+except ImportError:
+    yaml = None
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
@@ -39,6 +45,31 @@ class Repository(unittest.TestCase):
                 if name.startswith(kind) or name.endswith(kind):
                     kinds[kind] += len(citations.citations_of(name, line, text))
         self.assertGreater(min(kinds.values()), 18, kinds)
+
+
+class CitationFile(unittest.TestCase):
+    """CITATION.cff, by which others cite the program."""
+
+    TEXT = (REPOSITORY / "CITATION.cff").read_text(encoding="utf-8")
+
+    def test_has_the_programs_version_and_licence(self):
+        cmake = (REPOSITORY / "CMakeLists.txt").read_text(encoding="utf-8")
+        version = re.search(r"^project\(geoprior VERSION (\S+)", cmake, re.MULTILINE)[1]
+        self.assertIn(f"\nversion: {version}\n", self.TEXT)
+        licence = (REPOSITORY / "LICENSE").read_text(encoding="utf-8").split("\n", 2)
+        self.assertEqual([line.strip() for line in licence[:2]],
+                         ["GNU GENERAL PUBLIC LICENSE", "Version 3, 29 June 2007"])
+        self.assertIn("\nlicense: GPL-3.0-or-later\n", self.TEXT)
+
+    @unittest.skipUnless(yaml, "no PyYAML")
+    def test_has_what_the_format_requires(self):
+        said = yaml.safe_load(self.TEXT)
+        self.assertEqual((said["cff-version"], said["type"], said["title"]), ("1.2.0", "software", "geoprior"))
+        self.assertTrue(all(isinstance(said[key], str) for key in ("message", "abstract", "version", "license")))
+        self.assertTrue(all(isinstance(word, str) for word in said["keywords"]))
+        for work in (said, *said["references"]):
+            self.assertTrue(all("name" in author or "family-names" in author for author in work["authors"]))
+            self.assertTrue(work["title"] and work["type"])
 
 
 class Planted(unittest.TestCase):

@@ -27,7 +27,7 @@ import report  # noqa: E402
 import report_html  # noqa: E402
 import report_parts  # noqa: E402
 import runfile  # noqa: E402
-import wording  # noqa: E402
+from geoprior_results.texts import printable  # noqa: E402
 
 # What mathtext or a font cannot set, or a page or a terminal not show: a few of each kind, with GEOPRIOR_LONG all.
 TEXTS = [r"$\frac{1$", "$$", "bell\x07 esc\x1b[2J", "漢字 🙂", "", "<b>&\n\t" + "x" * 5000]
@@ -96,8 +96,8 @@ class StrangeTextTest(unittest.TestCase):
                 self.assertEqual(shown, " ".join(text.split()))
 
     def test_bytes_that_are_no_utf8_are_escaped(self):
-        self.assertEqual(wording.printable(runfile.text(b"a\xff\xe9b")), r"a\xff\xe9b")
-        self.assertEqual(wording.printable("bell\x07, \x9b, 90°\n"), "bell\\x07, \\x9b, 90°\n")
+        self.assertEqual(printable(runfile.text(b"a\xff\xe9b")), r"a\xff\xe9b")
+        self.assertEqual(printable("bell\x07, \x9b, 90°\n"), "bell\\x07, \\x9b, 90°\n")
         self.assertEqual(report_html.escape("\udcff<"), r"\xff&lt;")
 
     def test_folders_that_are_no_utf8_are_folders_like_others(self):

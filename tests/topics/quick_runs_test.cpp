@@ -24,6 +24,7 @@ TEST(QuickRuns, RunEveryMethod) {
   }
   for (const Topic& topic : topics) {
     for (const MethodEntry& method : topic.methods) {
+      if (method.make_at) continue;  // tests/testbed/external runs it in every topic
       EXPECT_TRUE(methods[topic.name].contains(method.name)) << topic.name << " " << method.name;
     }
   }

@@ -12,6 +12,7 @@
 #include "models/details/process.h"
 #include "testbed/formats/mesh/mesh_file.h"
 #include "testbed/formats/vtk/files.h"
+#include "testbed/given_tables.h"
 #include "testbed/home.h"
 
 namespace geoprior::details {
@@ -204,6 +205,31 @@ std::map<std::string, double> DetailsScene::facts() const {
           {"area", areas.sum()},
           {"details", static_cast<double>(input.details.size())},
           {"frames", static_cast<double>(input.motion->frame_count())}};
+}
+
+Frame DetailsScene::given() const {
+  Frame frame;
+  Part& surface = frame.parts["surface"] = rest().require_part("surface");
+  const Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>> inside(region.data(),
+                                                                        std::ssize(region));
+  surface.arrays.push_back({"region", "1", NamedArray::On::cells, inside.cast<double>()});
+  for (const char* part : {"details", "detail_mesh"}) frame.parts[part] = rest().require_part(part);
+  std::vector<double> times;
+  for (int i = 0; i < input.motion->frame_count(); ++i) {
+    times.push_back(input.motion->parameter(i));
+    Part& moved = frame.parts[numbered("motion", i)];
+    moved.kind = Part::Kind::points;
+    moved.points = input.motion->positions(i);
+  }
+  frame.tables["frames"] = frame_times(times);
+  return frame;
+}
+
+std::vector<PartShape> DetailsScene::frame_shape() const {
+  return {{"surface", Part::Kind::triangles, input.surface.vertex_count(), input.surface.F},
+          {"details", Part::Kind::points},
+          {"detail_mesh", Part::Kind::triangles},
+          {"visible_mesh", Part::Kind::triangles}};
 }
 
 std::shared_ptr<DetailsScene> load_details_scene(const DetailSceneOptions& options,

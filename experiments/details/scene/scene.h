@@ -43,6 +43,11 @@ class DetailsScene final : public ProcessScene {
   [[nodiscard]] bool measures_drawn_pop(double parameter) const;
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// Parts "surface" at rest with the array "region" (1 where the pattern is), "details" and their
+  /// "detail_mesh" as a frame has them, and "motion_0000" …: points of the surface in every frame;
+  /// table "frames" with their times.
+  [[nodiscard]] Frame given() const override;
+  [[nodiscard]] std::vector<PartShape> frame_shape() const override;
 
  private:
   /// Whether the frame is one of `count`, evenly over the motion without its first.

@@ -10,6 +10,7 @@
 #include "experiments/fluid/scene/edit_list.h"
 #include "experiments/fluid/scene/feature_files.h"
 #include "experiments/fluid/scene/ocean_sequence.h"
+#include "testbed/given_tables.h"
 #include "testbed/home.h"
 
 namespace geoprior::fluid {
@@ -238,6 +239,73 @@ void place_gauges(FluidScene& scene) {
       covering_grid(mesh.V, std::max(scene.cell, std::max(size.x(), size.y()) / kMostGauges));
 }
 
+/// Bodies of a tank as a table "volumes", "sources" or "solids", those that are meshes as parts.
+class GivenBodies {
+ public:
+  explicit GivenBodies(std::string name)
+      : name_(std::move(name)),
+        rows_({"kind", "centre_x [m]", "centre_y [m]", "centre_z [m]", "half_x [m]", "half_y [m]",
+               "half_z [m]", "radius [m]", "axis_x", "axis_y", "axis_z", "half_length [m]",
+               "velocity_x [m/s]", "velocity_y [m/s]", "velocity_z [m/s]", "from [s]",
+               "until [s]"}) {}
+
+  /// @param velocity  of the liquid that is put there, from one time to the other
+  void add(const LiquidShape& s, Frame& frame,
+           const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero(), double from = 0,
+           double until = 0) {
+    std::vector<double> row{static_cast<double>(s.kind)};
+    const auto append = [&row](const Eigen::Vector3d& v) {
+      row.insert(row.end(), v.begin(), v.end());
+    };
+    append(s.centre);
+    append(s.half_size);
+    row.push_back(s.radius);
+    append(s.axis);
+    row.push_back(s.half_length);
+    append(velocity);
+    row.insert(row.end(), {from, until});
+    rows_.add(row);
+    if (s.kind == LiquidShape::Kind::mesh) {
+      Part& part = frame.parts[numbered(name_, count_)];
+      part.points = s.mesh.V;
+      part.triangles = s.mesh.F;
+    }
+    ++count_;
+    frame.tables[name_ + "s"] = rows_.finished();
+  }
+
+ private:
+  std::string name_;
+  TableBuilder rows_;
+  int count_ = 0;
+};
+
+void give_tank(const Tank& tank, const std::vector<double>& times, Frame& frame) {
+  TableBuilder room({"x [m]", "y [m]", "z [m]", "cells_x", "cells_y", "cells_z", "cell [m]",
+                     "gravity_x [m/s^2]", "gravity_y [m/s^2]", "gravity_z [m/s^2]",
+                     "density [kg/m^3]", "open_top"});
+  const Eigen::Vector3d &o = tank.origin, &g = tank.gravity, n = tank.cells.cast<double>();
+  room.add({o.x(), o.y(), o.z(), n.x(), n.y(), n.z(), tank.cell, g.x(), g.y(), g.z(), tank.density,
+            tank.open_top ? 1.0 : 0.0});
+  frame.tables["tank"] = room.finished();
+  GivenBodies volumes("volume"), sources("source"), solids("solid");
+  for (const LiquidVolume& v : tank.volumes) volumes.add(v.shape, frame, v.velocity);
+  for (const LiquidSource& s : tank.sources)
+    sources.add(s.shape, frame, s.velocity, s.from, s.until);
+  TableBuilder moved(with_transform_columns({"frame", "solid"}));
+  for (std::size_t s = 0; s < tank.solids.size(); ++s) {
+    const TankSolid& solid = tank.solids[s];
+    solids.add(solid.shape, frame);
+    if (!solid.motion) continue;
+    const ShapeDistance distance(solid.shape, tank.cell);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      moved.add(with_transform({static_cast<double>(i), static_cast<double>(s)},
+                               place_solid(solid, distance, times[i], 0).placement));
+    }
+  }
+  frame.tables["solid_transforms"] = moved.finished();
+}
+
 }  // namespace
 
 const Tank& FluidScene::require_tank(const std::string& who) const {
@@ -260,6 +328,22 @@ std::map<std::string, double> FluidScene::facts() const {
   }
   if (sculpt.target) facts["target_frames"] = sculpt.target->frame_count();
   return facts;
+}
+
+Frame FluidScene::given() const {
+  Frame frame;
+  std::vector<double> times = sculpt.times;
+  if (tank) {
+    times.clear();
+    for (int i = 0; i < tank->frame_count(); ++i) times.push_back(tank->frame_time(i));
+    give_tank(*tank, times, frame);
+  }
+  frame.tables["frames"] = frame_times(times);
+  return frame;
+}
+
+std::vector<PartShape> FluidScene::frame_shape() const {
+  return {{"surface", Part::Kind::triangles}};
 }
 
 std::optional<double> FluidScene::dam_width() const {

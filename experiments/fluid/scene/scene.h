@@ -39,6 +39,12 @@ class FluidScene final : public ProcessScene {
   [[nodiscard]] std::optional<double> dam_width() const;
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// Table "frames"; of a tank also "tank" (one row) and, a row a body, "volumes", "sources" and
+  /// "solids" (kind 0 box, 1 sphere, 2 cylinder, 3 half space, 4 mesh), with the parts
+  /// "volume_0000", "source_0000", "solid_0000" of those that are meshes, and "solid_transforms": a
+  /// row a frame and solid that moves. Animations are input files.
+  [[nodiscard]] Frame given() const override;
+  [[nodiscard]] std::vector<PartShape> frame_shape() const override;
 };
 
 /// @param folder  of the experiment file, against which relative files are tried first

@@ -1,5 +1,6 @@
 #include "experiments/paper/scene/scene.h"
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -7,7 +8,9 @@
 #include "experiments/paper/scene/fast_handles.h"
 #include "experiments/paper/scene/make_sheet.h"
 #include "experiments/paper/scene/pulled_apart.h"
+#include "models/paper/meshing/uniform_mesh.h"
 #include "models/paper/sheet/valid.h"
+#include "testbed/given_tables.h"
 #include "testbed/keyframes.h"
 
 namespace geoprior::paper {
@@ -31,6 +34,64 @@ void warn_of_waves(PaperScene& scene) {
   }
 }
 
+/// The sheet before it moves, on a mesh that has vertices where handles hold it.
+Part flat_sheet(const Sheet& sheet) {
+  constexpr int kTriangles = 2000;
+  const double edge = equilateral_edge(signed_area(sheet.pattern), kTriangles);
+  require_lattice(sheet.pattern, edge);
+  const ShellMesh mesh = uniform_mesh(sheet.pattern, kTriangles, UniformLayout::automatic,
+                                      handle_points(sheet, edge), 1);
+  Part part;
+  part.triangles = mesh.triangles;
+  part.points.resize(mesh.vertex_count(), 3);
+  NamedArray handle{"handle", "1", NamedArray::On::points,
+                    Eigen::MatrixXd::Constant(mesh.vertex_count(), 1, -1)};
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Eigen::Vector2d p = mesh.pattern.row(v);
+    part.points.row(v) = sheet.placement * Eigen::Vector3d(p.x(), p.y(), 0);
+    const auto holds = [&](const Handle& h) { return h.covers(p); };
+    const auto first = std::find_if(sheet.handles.begin(), sheet.handles.end(), holds);
+    if (first == sheet.handles.end()) continue;
+    handle.values(v, 0) = static_cast<double>(first - sheet.handles.begin());
+  }
+  part.arrays = {{"pattern", "m", NamedArray::On::points, mesh.pattern}, std::move(handle)};
+  return part;
+}
+
+Part pattern_outline(const Pattern& pattern) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  std::vector<double> kinds;
+  const auto add = [&](const std::vector<Eigen::Vector2d>& points, bool closed, double kind) {
+    const auto first = static_cast<int>(part.points.rows());
+    part.points.conservativeResize(first + std::ssize(points), 3);
+    std::vector<int>& line = part.lines.emplace_back();
+    for (const Eigen::Vector2d& p : points) {
+      line.push_back(first + static_cast<int>(line.size()));
+      part.points.row(line.back()) << p.x(), p.y(), 0;
+    }
+    if (closed) line.push_back(first);
+    kinds.push_back(kind);
+  };
+  add(pattern.border, true, 0);
+  for (const auto& hole : pattern.holes) add(hole, true, 1);
+  for (const auto& cut : pattern.cuts) add(cut, false, 2);
+  part.arrays.push_back({"kind", "1", NamedArray::On::cells,
+                         Eigen::Map<const Eigen::VectorXd>(kinds.data(), std::ssize(kinds))});
+  return part;
+}
+
+/// Moves what a handle holds from where the flat sheet starts, as `Handle::target`.
+Eigen::Isometry3d handle_transform(const Handle& handle, const Eigen::Isometry3d& placement,
+                                   double time) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  const std::vector<Eigen::Vector2d> anchors = handle.anchors();
+  for (const Eigen::Vector2d& p : anchors) centre += placement * Eigen::Vector3d(p.x(), p.y(), 0);
+  centre /= static_cast<double>(anchors.size());
+  const Keyframe key = handle.motion->at(time);
+  return Eigen::Translation3d(centre + key.shift) * key.turn * Eigen::Translation3d(-centre);
+}
+
 }  // namespace
 
 std::map<std::string, double> PaperScene::facts() const {
@@ -42,6 +103,35 @@ std::map<std::string, double> PaperScene::facts() const {
           {"frames", static_cast<double>(sheet.frame_count())},
           {"membrane_stiffness", sheet.material.membrane_stiffness()},
           {"bending_stiffness", sheet.material.bending_stiffness()}};
+}
+
+Frame PaperScene::given() const {
+  Frame frame;
+  frame.parts["sheet"] = flat_sheet(sheet);
+  frame.parts["outline"] = pattern_outline(sheet.pattern);
+  std::vector<double> times;
+  for (int i = 0; i < sheet.frame_count(); ++i) times.push_back(sheet.frame_time(i));
+  frame.tables["frames"] = frame_times(times);
+  TableBuilder moved(with_transform_columns({"frame", "handle", "holds"}));
+  TableBuilder forces({"handle", "x [N]", "y [N]", "z [N]"});
+  for (std::size_t h = 0; h < sheet.handles.size(); ++h) {
+    const Handle& handle = sheet.handles[h];
+    const auto number = static_cast<double>(h);
+    if (const auto& force = handle.force) forces.add({number, force->x(), force->y(), force->z()});
+    if (!handle.motion) continue;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double holds = handle.is_active(times[i]) ? 1 : 0;
+      moved.add(with_transform({static_cast<double>(i), number, holds},
+                               handle_transform(handle, sheet.placement, times[i])));
+    }
+  }
+  frame.tables["handle_transforms"] = moved.finished();
+  frame.tables["handle_forces"] = forces.finished();
+  return frame;
+}
+
+std::vector<PartShape> PaperScene::frame_shape() const {
+  return {{"surface", Part::Kind::triangles}};
 }
 
 std::vector<Artifact> PaperScene::files_of(Frame& frame) const {

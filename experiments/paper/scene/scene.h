@@ -21,6 +21,13 @@ class PaperScene final : public ProcessScene {
   double fold_radius = 0.03;  ///< of the discs within which folds cancel (m)
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// Parts "sheet" (about 2,000 triangles, flat where the sheet starts, without the waves of the
+  /// imperfection; point arrays "pattern" and "handle", -1: none) and "outline" (lines of the
+  /// pattern, z = 0; "kind" 0 border, 1 hole, 2 cut); tables "frames", "handle_transforms" (a row a
+  /// frame and handle that moves: whether it holds, and the 3 x 4 matrix that moves what it holds
+  /// from the start) and "handle_forces" of those that pull (N).
+  [[nodiscard]] Frame given() const override;
+  [[nodiscard]] std::vector<PartShape> frame_shape() const override;
   /// No files: the part "drawn", of every method alike.
   [[nodiscard]] std::vector<Artifact> files_of(Frame& frame) const override;
 };

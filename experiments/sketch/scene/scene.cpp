@@ -19,6 +19,7 @@
 #include "testbed/formats/gltf/writer.h"
 #include "testbed/formats/mesh/mesh_file.h"
 #include "testbed/formats/svg/color.h"
+#include "testbed/given_tables.h"
 #include "testbed/home.h"
 
 namespace geoprior::sketch {
@@ -171,6 +172,44 @@ OneViewFiles one_view_files(const SketchSceneOptions& o, DecodedPicture& picture
   return files;
 }
 
+/// Adds a line of a view to a part, in the plane of the view through the origin.
+void add_view_line(const std::vector<Eigen::Vector2d>& points, bool closed,
+                   const Eigen::Matrix3d& frame, Part& part) {
+  part.kind = Part::Kind::lines;
+  const auto first = static_cast<int>(part.points.rows());
+  part.points.conservativeResize(first + std::ssize(points), 3);
+  std::vector<int>& line = part.lines.emplace_back();
+  for (const Eigen::Vector2d& p : points) {
+    line.push_back(first + static_cast<int>(line.size()));
+    part.points.row(line.back()) = p.transpose() * frame.topRows<2>();
+  }
+  if (closed) line.push_back(first);
+}
+
+/// The strokes of all views that are lines.
+Part strokes_in_space(const Drawing& drawing) {
+  Part part;
+  part.kind = Part::Kind::lines;
+  std::vector<double> kinds, views, closed;
+  for (const View& view : drawing.views) {
+    for (const Stroke& stroke : view.strokes) {
+      if (stroke.points.size() < 2) continue;  // a mark at a point
+      add_view_line(stroke.points, stroke.closed, view_frame(view.kind), part);
+      kinds.push_back(static_cast<double>(stroke.kind));
+      views.push_back(static_cast<double>(view.kind));
+      closed.push_back(stroke.closed ? 1 : 0);
+    }
+  }
+  const auto add = [&](const char* name, const std::vector<double>& values) {
+    part.arrays.push_back({name, "1", NamedArray::On::cells,
+                           Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values))});
+  };
+  add("kind", kinds);
+  add("view", views);
+  add("closed", closed);
+  return part;
+}
+
 void require_one_source(const SketchSceneOptions& options) {
   const bool drawn = !options.drawing.empty() || options.known;
   const int given = drawn + !options.surface.empty() + options.synthetic.has_value() +
@@ -226,6 +265,37 @@ std::map<std::string, double> SketchScene::facts() const {
   facts["triangles_asked"] = input.hull.triangles;
   if (input.surface) facts["triangles"] = input.surface->triangle_count();
   return facts;
+}
+
+Frame SketchScene::given() const {
+  Frame frame;
+  if (input.surface) {
+    Part& surface = frame.parts["surface"];
+    surface.points = input.surface->V;
+    surface.triangles = input.surface->F;
+    return frame;
+  }
+  const Drawing& drawing = aligned.views.empty() ? input.drawing : aligned;
+  frame.parts["strokes"] = strokes_in_space(drawing);
+  // Those that methods see: what `silhouettes` holds is the truth.
+  for (const OutlinedView& view : outlined_views(aligned)) {
+    add_view_line(view.outline.points(), true, view.frame,
+                  frame.parts[std::string("silhouette_") + view_name(view.kind)]);
+  }
+  TableBuilder views(
+      {"view", "right_x", "right_y", "right_z", "up_x", "up_y", "up_z", "eye_x", "eye_y", "eye_z"});
+  for (const View& view : drawing.views) {
+    std::vector<double> row{static_cast<double>(view.kind)};
+    for (const double value : view_frame(view.kind).reshaped<Eigen::RowMajor>())
+      row.push_back(value);
+    views.add(row);
+  }
+  frame.tables["views"] = views.finished();
+  return frame;
+}
+
+std::vector<PartShape> SketchScene::frame_shape() const {
+  return {{"surface", Part::Kind::triangles}};
 }
 
 const View& SketchScene::photo() const {

@@ -77,6 +77,12 @@ class SketchScene final : public ProcessScene {
   [[nodiscard]] std::string parameter_name() const override { return "iteration"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// Parts "silhouette_front", "_side", "_top" (a closed line each) and "strokes" of all views
+  /// (lines with the arrays "kind", "view", "closed": StrokeKind, ViewKind), aligned, each in the
+  /// plane of its view through the origin, or "surface" in place of a drawing; table "views" with
+  /// the directions of right, up and towards the eye.
+  [[nodiscard]] Frame given() const override;
+  [[nodiscard]] std::vector<PartShape> frame_shape() const override;
 };
 
 /// @param folder  of the experiment file, against which relative files are tried first

@@ -144,4 +144,55 @@ std::shared_ptr<SkinningScene> load_skinning_scene(const SkinningSceneOptions& o
   return scene;
 }
 
+Frame SkinningScene::given() const {
+  Frame frame;
+  Part& surface = frame.parts["surface"];
+  surface.points = rig.mesh.V;
+  surface.triangles = rig.mesh.F;
+  surface.arrays.push_back({"weights", "1", NamedArray::On::points, Eigen::MatrixXd(rig.weights)});
+
+  Part& bones = frame.parts["bones"];
+  bones.kind = Part::Kind::lines;
+  const int joints = rig.skeleton.size();
+  bones.points.resize(2 * joints, 3);
+  NamedArray joint{"joint", "1", NamedArray::On::cells, Eigen::MatrixXd(joints, 1)};
+  NamedArray parent{"parent", "1", NamedArray::On::cells, Eigen::MatrixXd(joints, 1)};
+  for (int j = 0; j < joints; ++j) {
+    const Joint& one = rig.skeleton.joints[j];
+    bones.points.row(2 * j) = one.head.transpose();
+    bones.points.row(2 * j + 1) = one.tail.value_or(one.head).transpose();
+    bones.lines.push_back({2 * j, 2 * j + 1});
+    joint.values(j, 0) = j;
+    joint.names.push_back(one.name);
+    parent.values(j, 0) = one.parent;
+  }
+  bones.arrays = {std::move(joint), std::move(parent)};
+
+  FrameTable& transforms = frame.tables["transforms"];
+  transforms.columns = {"frame", "joint"};
+  for (const char* row : {"x", "y", "z"}) {
+    for (const char* column : {"x", "y", "z"}) {
+      transforms.columns.push_back(std::string(row) + "_from_" + column);
+    }
+    transforms.columns.push_back(std::string(row) + "_shift [m]");
+  }
+  constexpr Eigen::Index kOfMatrix = 12;
+  transforms.rows.resize(std::ssize(frame_pose) * joints, 2 + kOfMatrix);
+  Eigen::Index at = 0;
+  for (std::size_t f = 0; f < frame_pose.size(); ++f) {
+    for (int j = 0; j < joints; ++j, ++at) {
+      const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> matrix =
+          frame_pose[f][j].matrix().topRows<3>();
+      transforms.rows(at, 0) = static_cast<double>(f);
+      transforms.rows(at, 1) = j;
+      transforms.rows.row(at).tail<kOfMatrix>() = matrix.reshaped<Eigen::RowMajor>().transpose();
+    }
+  }
+  return frame;
+}
+
+std::vector<PartShape> SkinningScene::frame_shape() const {
+  return {{"surface", Part::Kind::triangles, rig.mesh.vertex_count(), rig.mesh.F}};
+}
+
 }  // namespace geoprior::skinning

@@ -49,6 +49,11 @@ class SkinningScene final : public Scene {
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const override { return input_files; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return load_warnings; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// Parts "surface" at rest with the array "weights" (a column a joint) and "bones" (a line a
+  /// joint, with "joint" and "parent"); table "transforms": a row a frame and joint, the 3 x 4
+  /// matrix that moves points from rest.
+  [[nodiscard]] Frame given() const override;
+  [[nodiscard]] std::vector<PartShape> frame_shape() const override;
   [[nodiscard]] std::optional<Camera> camera() const override { return bending_view; }
 
   /// Pose at a parameter: that of the frame whose parameter is equal; throws Error when there is

@@ -103,7 +103,7 @@ CommandText write_generated(const std::string& folder, const BankCommandOptions&
 
 }  // namespace
 
-fs::path bank_folder() { return geoprior_home() / "data" / "banks"; }
+fs::path bank_folder() { return writable_home() / "data" / "banks"; }
 
 SoundBank cached_bank(const PaperMaterial& material, const BankOptions& options, std::uint64_t seed,
                       const fs::path& folder) {

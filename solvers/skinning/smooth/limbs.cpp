@@ -82,7 +82,8 @@ Eigen::VectorXd local_radii(const RiggedMesh& rig, const BonePartition& partitio
   return radius;
 }
 
-Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& partition) {
+Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& partition,
+                               ShortLimbs short_limbs) {
   Eigen::VectorXd length = local_radii(rig, partition);
   const double mean = length.sum() / static_cast<double>((length.array() > 0).count());
   std::vector<double> part;
@@ -91,7 +92,8 @@ Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& parti
     const auto ratio = static_cast<float>((bone.tail - bone.head).norm() / thickness);
     const float limb = smooth_ramp(kTrunk, kShortLimb, ratio);
     const float slim = smooth_ramp(kPhalanx, kLongLimb, ratio);
-    part.push_back(1 - (1 - kLeastSpread) * static_cast<double>(limb * (1 - slim)));
+    const bool less = short_limbs == ShortLimbs::less;
+    part.push_back(less ? 1 - (1 - kLeastSpread) * static_cast<double>(limb * (1 - slim)) : 1);
   }
   for (Eigen::Index v = 0; v < length.size(); ++v) {
     const int owner = partition.bone_of_vertex[v];

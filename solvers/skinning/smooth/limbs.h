@@ -25,10 +25,14 @@ std::vector<float> limb_shares(const RiggedMesh& rig, const BonePartition& parti
 /// one.
 Eigen::VectorXd local_radii(const RiggedMesh& rig, const BonePartition& partition);
 
+/// How far weights spread on a limb that is short for its thickness, as a phalanx: over less of its
+/// radius, else two of its joints would bend as one.
+enum class ShortLimbs { less, as_others };
+
 /// Lengths over which the weights of each vertex spread, times a width (m): its local radius (the
-/// mean of all without a bone), but less on a limb that is short for its thickness, as a phalanx:
-/// else two of its joints would bend as one.
-Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& partition);
+/// mean of all without a bone), or less.
+Eigen::VectorXd spread_lengths(const RiggedMesh& rig, const BonePartition& partition,
+                               ShortLimbs short_limbs);
 
 /// Means over one rings, `passes` times.
 void smooth_values(std::vector<float>& values, const SkinState& state, int passes);

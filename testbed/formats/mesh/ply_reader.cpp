@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "core/error.h"
 #include "testbed/formats/mesh/ply_header.h"
@@ -118,12 +119,80 @@ int integer(double value, const char* what, const Values& at) {
   return static_cast<int>(value);
 }
 
+/// The number at the end of "name_2", of a property with others of that name.
+struct ComponentName {
+  std::string name;
+  int component = 0;
+};
+
+std::optional<ComponentName> component_name(const std::string& property) {
+  const std::size_t at = property.find_last_not_of("0123456789");
+  if (at == std::string::npos || at == 0 || property[at] != '_') return std::nullopt;
+  const std::string digits = property.substr(at + 1);
+  if (digits.empty() || digits.size() > 4) return std::nullopt;
+  return ComponentName{property.substr(0, at), std::stoi(digits)};
+}
+
+/// Numbers of an element beside its coordinates or corners, row by row.
+class FurtherProperties {
+ public:
+  FurtherProperties(const Element& element, const std::vector<std::size_t>& known,
+                    NamedArray::On on)
+      : on_(on) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const bool is_known = std::find(known.begin(), known.end(), p) != known.end();
+      if (is_known || element.properties[p].count) continue;
+      columns_.push_back({element.properties[p].name, p, {}});
+      columns_.back().values.reserve(element.count);
+    }
+  }
+  void add(const std::vector<double>& row) {
+    for (Column& column : columns_) column.values.push_back(row[column.property]);
+  }
+  /// Adds them as arrays.
+  void take(std::vector<NamedArray>& arrays) const {
+    for (std::size_t first = 0; first < columns_.size();) {
+      const auto head = component_name(columns_[first].name);
+      std::size_t end = first + 1;
+      if (head && head->component == 0) {
+        for (; end < columns_.size(); ++end) {
+          const auto next = component_name(columns_[end].name);
+          const bool follows =
+              next && next->name == head->name && next->component == static_cast<int>(end - first);
+          if (!follows) break;
+        }
+      }
+      NamedArray array;
+      array.name = end - first > 1 ? head->name : columns_[first].name;
+      array.on = on_;
+      array.values.resize(std::ssize(columns_[first].values),
+                          static_cast<Eigen::Index>(end - first));
+      for (std::size_t c = first; c < end; ++c) {
+        array.values.col(static_cast<Eigen::Index>(c - first)) = Eigen::Map<const Eigen::VectorXd>(
+            columns_[c].values.data(), std::ssize(columns_[c].values));
+      }
+      arrays.push_back(std::move(array));
+      first = end;
+    }
+  }
+
+ private:
+  struct Column {
+    std::string name;
+    std::size_t property;
+    std::vector<double> values;
+  };
+  NamedArray::On on_;
+  std::vector<Column> columns_;
+};
+
 /// Reads the elements in the order of the file into a soup.
 template <class Values>
 class ElementReader {
  public:
-  ElementReader(Values values, PolygonSoup& soup, std::vector<std::string>& notes)
-      : values_(std::move(values)), soup_(soup), notes_(notes) {}
+  /// @param part  gets edges and further properties; null: they are left out
+  ElementReader(Values values, PolygonSoup& soup, std::vector<std::string>& notes, Part* part)
+      : values_(std::move(values)), soup_(soup), notes_(notes), part_(part) {}
 
   void read(const Element& element) {
     if (element.properties.empty()) return;
@@ -131,6 +200,7 @@ class ElementReader {
     if (element.name == "vertex") return vertices(element);
     if (element.name == "face") return faces(element);
     if (element.name == "tristrips") return strips(element);
+    if (element.name == "edge" && part_ != nullptr) return edges(element);
     if (element.count > 0) {
       notes_.push_back(std::to_string(element.count) + " of its element '" +
                        element.name.substr(0, 40) + "' left out");
@@ -174,6 +244,7 @@ class ElementReader {
     const bool moving = u && v && w;
     std::vector<double> row(element.properties.size());
     soup_.points.reserve(element.count);
+    FurtherProperties further(element, {*x, *y, *z}, NamedArray::On::points);
     const auto finite = [&](Eigen::Vector3d vector, const char* what) {
       if (vector.allFinite()) return vector;
       throw Error(std::string(what) + " of vertex " + std::to_string(soup_.points.size()) +
@@ -187,7 +258,9 @@ class ElementReader {
             soup_.velocity.push_back(finite({row[*u], row[*v], row[*w]}, "velocity"));
           }
           soup_.points.push_back(finite({row[*x], row[*y], row[*z]}, "position"));
+          if (part_ != nullptr) further.add(row);
         });
+    if (part_ != nullptr) further.take(part_->arrays);
   }
 
   void faces(const Element& element) {
@@ -196,14 +269,44 @@ class ElementReader {
       throw Error("its faces have no list vertex_indices", values_.place());
     }
     soup_.ends.reserve(element.count);
+    std::vector<double> row(element.properties.size());
+    FurtherProperties further(element, {*corners}, NamedArray::On::cells);
     rows(
         element,
         [&](std::size_t p, double value) {
+          row[p] = value;
           if (p == *corners) {
             soup_.corners.push_back(integer(value, "index of a vertex", values_));
           }
         },
-        [&] { soup_.end_face(); });
+        [&] {
+          soup_.end_face();
+          if (part_ != nullptr) further.add(row);
+        });
+    const bool all_triangles = soup_.corners.size() == 3 * soup_.ends.size();
+    if (part_ != nullptr && all_triangles) further.take(part_->arrays);
+  }
+
+  /// Pairs of vertices, each a line of its own.
+  void edges(const Element& element) {
+    const auto first = element.find({"vertex1"}), second = element.find({"vertex2"});
+    if (!first || !second) throw Error("its edges have no vertex1, vertex2", values_.place());
+    std::vector<double> row(element.properties.size());
+    FurtherProperties further(element, {*first, *second}, NamedArray::On::cells);
+    const auto vertex = [&](double value) {
+      const int v = integer(value, "index of a vertex", values_);
+      if (v >= 0 && v < std::ssize(soup_.points)) return v;
+      throw Error("an edge names vertex " + std::to_string(v) + " of " +
+                      std::to_string(soup_.points.size()),
+                  values_.place());
+    };
+    rows(
+        element, [&](std::size_t p, double value) { row[p] = value; },
+        [&] {
+          part_->lines.push_back({vertex(row[*first]), vertex(row[*second])});
+          further.add(row);
+        });
+    further.take(part_->arrays);
   }
 
   /// Lists of vertices, each with the two before it a triangle, every second one turned over; -1
@@ -239,37 +342,59 @@ class ElementReader {
   Values values_;
   PolygonSoup& soup_;
   std::vector<std::string>& notes_;
+  Part* part_;
 };
 
 template <class Values>
 void read_elements(const PlyHeader& header, Values values, PolygonSoup& soup,
-                   std::vector<std::string>& notes) {
-  ElementReader<Values> reader(std::move(values), soup, notes);
+                   std::vector<std::string>& notes, Part* part) {
+  ElementReader<Values> reader(std::move(values), soup, notes, part);
   for (const Element& element : header.elements) reader.read(element);
+}
+
+MeshFile read_ply(std::string_view bytes, const PlyHeader& header, const std::string& name,
+                  Part* part) {
+  if (header.element("vertex") == nullptr) throw Error("has no element 'vertex'", name);
+  PolygonSoup soup;
+  std::vector<std::string> notes;
+  const std::string_view data = bytes.substr(header.data);
+  if (header.format == PlyHeader::Format::ascii) {
+    const std::string text = plain_text(std::string(data), name);
+    read_elements(header, TextValues(text, header.data_line, name), soup, notes, part);
+  } else {
+    const bool swapped = header.format == PlyHeader::Format::big_endian;
+    read_elements(header, BinaryValues(data, header.data, swapped, name), soup, notes, part);
+  }
+  MeshFile file = mesh_of(soup, name);
+  file.notes = std::move(notes);
+  return file;
 }
 
 }  // namespace
 
 MeshFile parse_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
-  if (header.element("vertex") == nullptr) throw Error("has no element 'vertex'", name);
   if (header.element("face") == nullptr && header.element("tristrips") == nullptr) {
     throw Error("has no element 'face'", name,
                 "faces or tristrips; a cloud of points is no surface, a range_grid is not read");
   }
-  PolygonSoup soup;
-  std::vector<std::string> notes;
-  const std::string_view data = bytes.substr(header.data);
-  if (header.format == PlyHeader::Format::ascii) {
-    const std::string text = plain_text(std::string(data), name);
-    read_elements(header, TextValues(text, header.data_line, name), soup, notes);
-  } else {
-    const bool swapped = header.format == PlyHeader::Format::big_endian;
-    read_elements(header, BinaryValues(data, header.data, swapped, name), soup, notes);
+  return read_ply(bytes, header, name, nullptr);
+}
+
+Part parse_ply_part(std::string_view bytes, const std::string& name) {
+  const PlyHeader header = parse_ply_header(bytes, name);
+  const bool has_faces = header.element("face") != nullptr;
+  const bool has_edges = header.element("edge") != nullptr;
+  if (header.element("tristrips") != nullptr || (has_faces && has_edges)) {
+    throw Error("has strips, or faces and edges", name,
+                "vertices with faces, with edges, or alone");
   }
-  MeshFile file = mesh_of(soup, name);
-  file.notes = std::move(notes);
-  return file;
+  Part part;
+  MeshFile file = read_ply(bytes, header, name, &part);
+  if (!has_faces) part.kind = has_edges ? Part::Kind::lines : Part::Kind::points;
+  part.points = std::move(file.mesh.V);
+  part.triangles = std::move(file.mesh.F);
+  return part;
 }
 
 }  // namespace geoprior

@@ -123,8 +123,11 @@ SortedJson write(const CaseLine& line) {
 SortedJson write(const BeginLine& line) {
   SortedJson json = at(line.place, "begin");
   json["timing"] = numbers(line.timing);
+  if (!line.inputs.empty()) json["inputs"] = files(line.inputs);
   return json;
 }
+
+SortedJson write(const RetryLine& line) { return at(line.place, "retry"); }
 
 SortedJson write(const FrameLine& line) {
   SortedJson json = at(line.place, "frame");
@@ -264,7 +267,12 @@ Line read(const SortedJson& json) {
   if (kind == "event") return read_event(json);
   if (kind == "timing") return read_timing(json);
   if (kind == "artifact") return ArtifactLine{place(json), file(json)};
-  if (kind == "begin") return BeginLine{place(json), numbers(json.at("timing"))};
+  if (kind == "retry") return RetryLine{place(json)};
+  if (kind == "begin") {
+    return BeginLine{
+        place(json), numbers(json.at("timing")),
+        json.contains("inputs") ? files(json.at("inputs")) : std::vector<StoredFile>{}};
+  }
   if (kind == "result") return ResultLine{file(json)};
   if (kind == "processor") return ProcessorLine{number(json.at("seconds"))};
   if (kind == "error") return ErrorLine{place(json), json.at("message")};

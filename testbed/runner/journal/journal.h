@@ -44,7 +44,12 @@ struct CaseLine {
 };
 struct BeginLine {
   Place place;
-  Numbers timing;  ///< "prepare" and the phases in it, s
+  Numbers timing;                       ///< "prepare" and the phases in it, s
+  std::vector<StoredFile> inputs = {};  ///< that the variant reads beside the scene's
+};
+/// A variant that failed begins anew: what it has is void.
+struct RetryLine {
+  Place place;
 };
 struct FrameLine {
   Place place;
@@ -105,7 +110,7 @@ struct ResultLine {
 
 using Line =
     std::variant<RunLine, CaseLine, BeginLine, FrameLine, EventLine, ArtifactLine, CheckpointLine,
-                 ResumeLine, EndLine, TimingLine, ErrorLine, ProcessorLine, ResultLine>;
+                 ResumeLine, RetryLine, EndLine, TimingLine, ErrorLine, ProcessorLine, ResultLine>;
 
 /// One JSON object without line break; numbers are exact.
 std::string to_text(const Line& line);

@@ -95,6 +95,10 @@ std::vector<StoredFile> Recorder::write_frame(const journal::Place& place, std::
   return files;
 }
 
+void Recorder::discard(const std::vector<StoredFile>& files) {
+  for (const StoredFile& file : files) remove(file.name);
+}
+
 void Recorder::write_event(const journal::Place& place, const Event& event) {
   require_event_numbers(event, "variant '" + place.variant + "', event " +
                                    std::to_string(state_.variant_of(place).record.events.size()));

@@ -31,6 +31,8 @@ class Recorder {
   /// @throws Error  for a name that is no file name, or a file that cannot be written
   std::vector<StoredFile> write_frame(const journal::Place& place, std::size_t index,
                                       const Frame& frame);
+  /// Removes files of a frame that is not logged.
+  void discard(const std::vector<StoredFile>& files);
   /// Logs an event; the next line that is flushed takes it to the disk.
   /// @throws Error  as require_event_numbers
   void write_event(const journal::Place& place, const Event& event);

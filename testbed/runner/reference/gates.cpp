@@ -58,13 +58,16 @@ void add_counted_work(const Topic& topic, const VariantRecord& variant,
   }
 }
 
-/// Whether results of a variant repeat; methods that the topic does not know do.
+}  // namespace
+
 bool has_gated_method(const Topic& topic, const VariantRecord& variant) {
   const auto method =
       std::find_if(topic.methods.begin(), topic.methods.end(),
                    [&](const MethodEntry& entry) { return entry.name == variant.method; });
   return method == topic.methods.end() || method->gated();
 }
+
+namespace {
 
 GatedValues values_of_cases(const Topic& topic, const std::vector<Headline>& headlines,
                             const RunRecord& record) {
@@ -110,7 +113,8 @@ std::string name_over_seeds(const CaseRecord& in) {
   return name + "seed=*";
 }
 
-/// The values of cases that differ in their seed only, replaced by their median.
+}  // namespace
+
 GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& values) {
   struct Sample {
     std::string unit;
@@ -141,8 +145,6 @@ GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& value
   }
   return medians;
 }
-
-}  // namespace
 
 Gates::Gates(const Experiment& experiment, const Topic& topic) {
   for (const MetricEntry& metric : metric_rows(topic)) {

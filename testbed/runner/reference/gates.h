@@ -71,6 +71,14 @@ void visit_values(const Values& set, Visit visit) {
 GatedValues gated_values(const Experiment& experiment, const Topic& topic, const RunRecord& record,
                          const std::vector<ClaimRecord>& claims);
 
+/// Whether results of a variant repeat; methods that the topic does not know do.
+bool has_gated_method(const Topic& topic, const VariantRecord& variant);
+
+/// The values of cases that differ in their seed only, replaced by their median; such a case is
+/// called "seed=*".
+/// @param values  of the record's cases
+GatedValues medians_over_seeds(const RunRecord& record, const GatedValues& values);
+
 /// How much worse a headline metric may be than its reference, however wide its tolerance: the
 /// larger of 3 % and twice the absolute tolerance.
 double headline_limit(const Gate& gate, double reference);
@@ -78,5 +86,19 @@ double headline_limit(const Gate& gate, double reference);
 /// By how much a value is worse than the reference; negative when better. Without a direction any
 /// change is for the worse.
 double worsening(const Gate& gate, double value, double reference);
+
+/// The value of a set of this shape; null when there is none.
+template <class Values>
+const auto* find_value(const Values& set, const std::string& case_name, const std::string& variant,
+                       const std::string& name) {
+  using Found = typename Values::mapped_type::mapped_type::mapped_type;
+  const Found* none = nullptr;
+  const auto in_case = set.find(case_name);
+  if (in_case == set.end()) return none;
+  const auto of_variant = in_case->second.find(variant);
+  if (of_variant == in_case->second.end()) return none;
+  const auto value = of_variant->second.find(name);
+  return value == of_variant->second.end() ? none : &value->second;
+}
 
 }  // namespace geoprior

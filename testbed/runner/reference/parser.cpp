@@ -248,15 +248,20 @@ class ReferenceParser {
   }
 
   void read_outcome() {
+    if (words_.size() < 4 || words_.size() % 2 != 0) {
+      fail("is no line of this kind", "outcome, the case, then variants with a hash each");
+    }
+    for (std::size_t i = 2; i < words_.size(); i += 2) read_outcome_of(words_[i], words_[i + 1]);
+  }
+  void read_outcome_of(const Word& of_variant, const Word& of_outcome) {
     ++rows_;
-    require_words(4, "outcome, the case, the variant, a hash");
-    const std::string& hash = words_[3].text;
+    const std::string& hash = of_outcome.text;
     const bool is_hash = hash.size() == kOutcomeDigits &&
                          hash.find_first_not_of("0123456789abcdef") == std::string::npos;
     if (!is_hash) {
       fail("'" + hash + "' is no outcome", std::to_string(kOutcomeDigits) + " hexadecimal digits");
     }
-    const std::string in = name_of(words_[1]), variant = name_of(words_[2]);
+    const std::string in = name_of(words_[1]), variant = name_of(of_variant);
     if (!set_->outcomes[in].emplace(variant, hash).second) {
       fail("the outcome of variant '" + variant + "' in case '" + in + "' is there twice");
     }

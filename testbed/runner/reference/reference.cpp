@@ -31,19 +31,6 @@ std::string change(const Gate& gate, double value, double reference) {
   return worse > 0 ? "changed for the worse" : "changed for the better (bless it to keep it)";
 }
 
-template <class Values>
-const auto* find_in(const Values& set, const std::string& case_name, const std::string& variant,
-                    const std::string& name) {
-  using Found = typename Values::mapped_type::mapped_type::mapped_type;
-  const Found* none = nullptr;
-  const auto in_case = set.find(case_name);
-  if (in_case == set.end()) return none;
-  const auto of_variant = in_case->second.find(variant);
-  if (of_variant == in_case->second.end()) return none;
-  const auto value = of_variant->second.find(name);
-  return value == of_variant->second.end() ? none : &value->second;
-}
-
 /// Fills in `problem`; leaves it empty where the value is what it was.
 void judge(const Gate& gate, const GatedValue& now, const ReferenceValue& before, Mismatch& m) {
   m.reference = before.value;
@@ -112,11 +99,6 @@ void write_reference(const Reference& reference, const std::filesystem::path& fi
   write_file_atomically(file, std::string_view(text));
 }
 
-const ReferenceValue* find_value(const ReferenceSet& set, const std::string& case_name,
-                                 const std::string& variant, const std::string& name) {
-  return find_in(set, case_name, variant, name);
-}
-
 std::vector<Mismatch> compare_with_reference(const GatedValues& now, const ReferenceSet& reference,
                                              const Gates& gates) {
   std::vector<Mismatch> mismatches;
@@ -124,7 +106,7 @@ std::vector<Mismatch> compare_with_reference(const GatedValues& now, const Refer
     const Gate gate = gates.of(variant, name);
     if (!gate.compared) return;
     Mismatch mismatch{in, variant, name, "", value.value, kNoValue, 0, value.unit};
-    if (const auto* before = find_in(reference, in, variant, name)) {
+    if (const auto* before = find_value(reference, in, variant, name)) {
       judge(gate, value, *before, mismatch);
     } else {
       mismatch.fails = must_be_blessed(reference, name);
@@ -135,7 +117,8 @@ std::vector<Mismatch> compare_with_reference(const GatedValues& now, const Refer
   });
   visit_values(
       reference, [&](const auto& in, const auto& variant, const auto& name, const auto& before) {
-        if (find_in(now, in, variant, name) != nullptr || !gates.of(variant, name).compared) return;
+        if (find_value(now, in, variant, name) != nullptr || !gates.of(variant, name).compared)
+          return;
         mismatches.push_back(
             {in, variant, name, gone_text(name), kNoValue, before.value, 0, before.unit});
       });

@@ -34,10 +34,6 @@ struct Mismatch {
   bool fails = true;  ///< false: a notice
 };
 
-/// Null when there is none.
-const ReferenceValue* find_value(const ReferenceSet& set, const std::string& case_name,
-                                 const std::string& variant, const std::string& name);
-
 /// Every gated value against the set: |value - reference| <= absolute + relative |reference|, and
 /// no headline metric worse by more than `headline_limit`. A change for the better is a mismatch
 /// too: reference values follow by `bless`, or they would hide the next loss. Of counted work only

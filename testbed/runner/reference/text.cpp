@@ -7,9 +7,12 @@
 
 #include "core/error.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/reference/gates.h"
 
 namespace geoprior {
 namespace {
+
+constexpr std::size_t kLongestOutcomeLine = 120;
 
 constexpr std::size_t kWidestColumn = 48;
 constexpr std::size_t kNarrowestNumber = 13;
@@ -207,9 +210,17 @@ std::string content_text(const ContentHash& content) {
 std::string outcomes_text(const Outcomes& outcomes) {
   std::string text;
   for (const auto& [in, variants] : outcomes) {
+    std::string line;
     for (const auto& [variant, hash] : variants) {
-      text += "outcome " + word_of(in) + " " + word_of(variant) + " " + hash + "\n";
+      const std::string pair = " " + word_of(variant) + " " + hash;
+      if (!line.empty() && line.size() + pair.size() > kLongestOutcomeLine) {
+        text += line + "\n";
+        line.clear();
+      }
+      if (line.empty()) line = "outcome " + word_of(in);
+      line += pair;
     }
+    if (!line.empty()) text += line + "\n";
   }
   return text;
 }

@@ -70,7 +70,7 @@ double spread_length(double slimness) {
   options.cap_height = 0.2 * options.radius;
   const RiggedMesh rig = two_bone_cylinder(options);
   const BonePartition partition = partition_bones(rig, PartitionRule::highest_weight, 1);
-  const Eigen::VectorXd length = spread_lengths(rig, partition);
+  const Eigen::VectorXd length = spread_lengths(rig, partition, ShortLimbs::less);
   Eigen::Index middle = 0;
   rig.mesh.V.col(0).cwiseAbs().minCoeff(&middle);
   return length(middle) / options.radius;

@@ -14,6 +14,7 @@
 #include "testbed/view/child_process.h"
 #include "testbed/view/python.h"
 #include "tests/testbed/run_fixture.h"
+#include "tests/testbed/toy_home.h"
 
 namespace geoprior {
 namespace {
@@ -72,6 +73,60 @@ TEST(Home, VariableWinsAndIsChecked) {
   }
   const Variable variable("GEOPRIOR_HOME", "/proc");
   EXPECT_THAT(test::error_of([] { geoprior_home(); }), HasSubstr("GEOPRIOR_HOME=/proc"));
+}
+
+/// A folder like /usr with the program in it, in a folder like a clone.
+class Prefix {
+ public:
+  Prefix() {
+    std::string pattern = (fs::temp_directory_path() / "geoprior-prefix-XXXXXX").string();
+    clone = ::mkdtemp(pattern.data());
+    for (const char* folder : {"experiments", "results", "usr/bin",
+                               "usr/share/geoprior/experiments", "usr/share/geoprior/results"}) {
+      fs::create_directories(clone / folder);
+    }
+  }
+  ~Prefix() { fs::remove_all(clone); }
+  Prefix(const Prefix&) = delete;
+  Prefix& operator=(const Prefix&) = delete;
+
+  fs::path clone;
+};
+
+TEST(Home, OfAnInstalledProgramIsBesideItsBin) {
+  const Prefix prefix;
+  const Home installed = home_of(prefix.clone / "usr/bin/geoprior");
+  EXPECT_EQ(installed.folder, prefix.clone / "usr/share/geoprior");
+  EXPECT_TRUE(installed.installed);
+  const Home built = home_of(prefix.clone / "build/release/geoprior");
+  EXPECT_EQ(built.folder, prefix.clone);
+  EXPECT_FALSE(built.installed);
+  EXPECT_THAT(test::error_of([] { home_of("/proc/geoprior"); }), HasSubstr("GEOPRIOR_HOME"));
+}
+
+// The toy program, installed and started by a user: its home is read, the user's folder is written.
+TEST(Home, OfAnInstalledProgramIsNotWrittenTo) {
+  const Prefix prefix;
+  const fs::path program = prefix.clone / "usr/bin/geoprior";
+  fs::copy_file(GEOPRIOR_TOY_PROGRAM, program);
+  fs::create_directories(prefix.clone / "usr/share/geoprior/experiments/toy-circle");
+  std::ofstream(prefix.clone / "usr/share/geoprior/experiments/toy-circle/disc.toml")
+      << toy::disc_experiment();
+  const auto run = [&](const std::string& variables) {
+    return run_child({"/bin/sh", "-c",
+                      "unset GEOPRIOR_HOME GEOPRIOR_RUNS XDG_DATA_HOME HOME; exec env " +
+                          variables + " '" + program.string() +
+                          "' run toy-circle/disc --no-pictures"});
+  };
+  const fs::path user = prefix.clone / "user";
+  EXPECT_EQ(run("HOME='" + user.string() + "'").exit_code, 0);
+  EXPECT_TRUE(fs::is_directory(user / ".local/share/geoprior/results/runs/toy-circle/disc"));
+  EXPECT_EQ(run("XDG_DATA_HOME='" + (user / "data").string() + "'").exit_code, 0);
+  EXPECT_TRUE(fs::is_directory(user / "data/geoprior/results/runs/toy-circle/disc"));
+  const ChildResult nowhere = run("XDG_DATA_HOME=relative");
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.errors, HasSubstr("HOME is not set"));
+  EXPECT_TRUE(fs::is_empty(prefix.clone / "usr/share/geoprior/results"));
 }
 
 TEST(ChildProcess, ArgumentsArriveUnchanged) {

@@ -113,8 +113,8 @@ TEST(Outcomes, StandInTheReferenceALineEach) {
   set.values["n=1"]["v"]["error.max"] = {0.5, "m"};
   set.outcomes = {{"n=1", {{"v", kFirst}, {"w", kFirst}}}, {"n=2", {{"v", kSecond}}}};
   const std::string text = reference_text({{"quick", set}});
-  EXPECT_THAT(text, HasSubstr("0.5\noutcome n=1 v " + kFirst + "\noutcome n=1 w " + kFirst +
-                              "\noutcome n=2 v " + kSecond + "\n\nend 4\n"));
+  EXPECT_THAT(text, HasSubstr("0.5\noutcome n=1 v " + kFirst + " w " + kFirst + "\noutcome n=2 v " +
+                              kSecond + "\n\nend 4\n"));
   const Reference read = parse_reference(text, "r.txt");
   EXPECT_EQ(read.at("quick").outcomes, set.outcomes);
   EXPECT_EQ(reference_text(read), text);

@@ -35,7 +35,7 @@ TEST(Export, ObjKeepsEveryBitOfThePositions) {
   make_fake_run(folder.path);
   export_run(OpenedRun(folder.path), "obj", folder.path / "out");
   EXPECT_EQ(count_files(folder.path / "out", ".obj"), 6);
-  std::ifstream in(folder.path / "out/default/second-box/surface_0002.obj");
+  std::ifstream in(folder.path / "out/default/second-box/frames/surface_0002.obj");
   const Part expected = make_box({0, 0, 0}, {1.2, 1, 1.0 / 3});
   std::string line;
   Eigen::Index vertex = 0;

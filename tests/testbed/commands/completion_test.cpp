@@ -1,0 +1,127 @@
+// Completion scripts and the manual page: made of what the commands say of themselves, and accepted
+// by those who read them.
+#include "testbed/commands/shell/completion.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "testbed/commands/shell/manual.h"
+#include "testbed/view/child_process.h"
+#include "tests/testbed/toy_home.h"
+
+namespace geoprior {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using toy::Outcome;
+
+class Completion : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    home_.write("experiments/toy-circle/disc.toml", toy::disc_experiment());
+    home_.write("experiments/toy-circle/disc-large.toml", toy::disc_experiment());
+  }
+
+  [[nodiscard]] std::string script(const std::string& shell) const {
+    const Outcome outcome = home_.run("completion " + shell);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.out;
+  }
+
+  /// What bash offers for the last of these words, which the shell would have split.
+  [[nodiscard]] std::set<std::string> offered(const std::string& words) const {
+    const auto completion = home_.write("completion.bash", script("bash"));
+    const auto asking =
+        home_.write("ask.bash", "source '" + completion.string() + "'\nCOMP_WORDS=(" + words +
+                                    ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_geoprior\n"
+                                    "printf '%s\\n' \"${COMPREPLY[@]}\" >&2\n");
+    const ChildResult result = run_child({"bash", asking.string()});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    std::istringstream lines(result.errors);
+    std::set<std::string> words_offered;
+    for (std::string line; std::getline(lines, line);) words_offered.insert(line);
+    return words_offered;
+  }
+
+  /// Runs a program on a text where the program is installed.
+  void expect_accepted(const std::vector<std::string>& command, const std::string& text) const {
+    if (!find_program(command.front())) return;
+    std::vector<std::string> call = command;
+    call.push_back(home_.write("accepted.txt", text).string());
+    const ChildResult result = run_child(call);
+    EXPECT_EQ(result.exit_code, 0) << command.front() << ": " << result.errors;
+    EXPECT_EQ(result.errors, "") << command.front();
+  }
+
+  toy::Home home_;
+};
+
+TEST_F(Completion, BashOffersCommandsOptionsAndExperiments) {
+  EXPECT_EQ(offered("geoprior ru"), std::set<std::string>{"run"});
+  EXPECT_THAT(offered("geoprior run toy-circle/di"),
+              IsSupersetOf({"toy-circle/disc", "toy-circle/disc-large"}));
+  EXPECT_THAT(offered("geoprior run toy-circle/disc --qu"), Contains("--quick"));
+  EXPECT_THAT(offered("geoprior check toy-circle/disc toy-circle/disc-"),
+              Contains("toy-circle/disc-large"));
+  EXPECT_THAT(offered("geoprior describe poly"), Contains("polygon"));
+  EXPECT_THAT(offered("geoprior render x --view toy-c"), Contains("toy-circle/disc"));
+  EXPECT_EQ(offered("geoprior export x --format g"), std::set<std::string>{"glb"});
+  EXPECT_EQ(offered("geoprior export x --format = o"), std::set<std::string>{"obj"});
+  // A number is no word that could be offered.
+  EXPECT_EQ(offered("geoprior run x --threads ''"), std::set<std::string>{""});
+}
+
+TEST_F(Completion, ShellsAcceptTheirScripts) {
+  expect_accepted({"bash", "-n"}, script("bash"));
+  expect_accepted({"zsh", "-n"}, script("zsh"));
+  expect_accepted({"fish", "--no-execute"}, script("fish"));
+  EXPECT_EQ(home_.run("completion tcsh").code, 2);
+}
+
+TEST_F(Completion, EveryShellHasEveryOption) {
+  const std::string zsh = script("zsh"), fish = script("fish"), bash = script("bash");
+  for (const std::string option : {"quick", "variant", "resume", "fps", "rows", "format"}) {
+    EXPECT_THAT(bash, HasSubstr("--" + option));
+    EXPECT_THAT(zsh, HasSubstr("--" + option + "["));
+    EXPECT_THAT(fish, HasSubstr("-l " + option));
+  }
+}
+
+// What the shells would read as their own: brackets, colons and quotes of a description.
+TEST(CompletionScripts, DescriptionsAreQuoted) {
+  const CommandWord option{{"--odd"}, "N", "it's [x]: \"a\\b\"", false, false, Offer::nothing, {}};
+  const CommandTree program{"geoprior", "", "",
+                            {},         {}, {{"make", "it's: x", "", {option}, {}, {}}}};
+  EXPECT_THAT(zsh_completion(program, {}),
+              AllOf(HasSubstr(R"('--odd[it'\''s \[x\]\: "a\\b"]:N: ')"),
+                    HasSubstr(R"('make:it'\''s\: x')")));
+  EXPECT_THAT(fish_completion(program, {}), HasSubstr(R"(-l odd -x -d 'it\'s [x]: "a\\b"')"));
+}
+
+TEST_F(Completion, ManualHasEveryCommandAndLintsClean) {
+  const Outcome manual = home_.run("manual");
+  EXPECT_EQ(manual.code, 0) << manual.err;
+  for (const char* section : {".SH NAME", ".SH SYNOPSIS", ".SH COMMANDS", ".SS run", ".SS doctor",
+                              ".SH EXAMPLES", ".SH EXIT CODES", ".SH ENVIRONMENT"}) {
+    EXPECT_THAT(manual.out, HasSubstr(std::string(section) + "\n"));
+  }
+  expect_accepted({"mandoc", "-T", "lint", "-W", "warning"}, manual.out);
+}
+
+TEST(Manual, TextIsNoMacroOfItsFormatter) {
+  const CommandTree program{"geoprior", ".x a\\b", "", {}, {}, {{"make", "'so", "", {}, {}, {}}}};
+  const std::string page = manual_page(program, "2025-01-31", "1.2.3");
+  EXPECT_THAT(page,
+              AllOf(HasSubstr(".TH GEOPRIOR 1 2025-01-31 \"geoprior 1.2.3\""),
+                    HasSubstr("\\&.x a\\eb"), HasSubstr("\n\\&'so.\n"), Not(HasSubstr("\n'so"))));
+}
+
+}  // namespace
+}  // namespace geoprior
