@@ -20,7 +20,7 @@ packages=(
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   # plots, report and the checks that a run needs nothing of ours
-  python3 python3-numpy python3-h5py python3-matplotlib python3-pil python3-ezdxf
+  python3 python3-numpy python3-scipy python3-h5py python3-matplotlib python3-pil python3-ezdxf
   # engines that queries and rules of an ontology are held against
   python3-rdflib gringo clasp
   # pictures without a display
