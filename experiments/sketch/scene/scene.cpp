@@ -285,9 +285,9 @@ Frame SketchScene::given() const {
   TableBuilder views(
       {"view", "right_x", "right_y", "right_z", "up_x", "up_y", "up_z", "eye_x", "eye_y", "eye_z"});
   for (const View& view : drawing.views) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> directions = view_frame(view.kind);
     std::vector<double> row{static_cast<double>(view.kind)};
-    for (const double value : view_frame(view.kind).reshaped<Eigen::RowMajor>())
-      row.push_back(value);
+    row.insert(row.end(), directions.data(), directions.data() + directions.size());
     views.add(row);
   }
   frame.tables["views"] = views.finished();

@@ -186,5 +186,32 @@ TEST_F(FluidScenes, GridsTooLargeForMemoryAreRefusedBeforeTheyStart) {
                     HasSubstr("a grid that fits into")));
 }
 
+TEST_F(FluidScenes, GiveATankWithItsBodiesAndTheMapsOfThoseThatMove) {
+  write("body.obj", kTetrahedron);
+  const Frame given =
+      scene(
+          "duration = 0.1\nframe_interval = 0.05\ntank = { size = [0.4, 0.2, 0.2], cell = 0.05, "
+          "volumes = [{ shape = { kind = \"box\", centre = [0.1, 0.1, 0.05], size = [0.2, 0.2, "
+          "0.1] } }], solids = [{ name = \"body\", shape = { kind = \"mesh\", file = \"body.obj\", "
+          "scale = 0.1, centre = [0.2, 0.05, 0.05] }, keys = [{ t = 0 }, { t = 0.1, move = [0, 0, "
+          "0.04], turn_deg = [0, 0, 90] }] }] }\n")
+          .given();
+  EXPECT_EQ(given.require_table("tank").rows.row(0).segment<4>(3),
+            Eigen::RowVector4d(8, 4, 4, 0.05));
+  EXPECT_EQ(
+      given.require_table("volumes").rows.row(0).segment<6>(1).cast<float>(),
+      (Eigen::Matrix<double, 1, 6>() << 0.1, 0.1, 0.05, 0.1, 0.1, 0.05).finished().cast<float>());
+  const Part& body = given.require_part("solid_0000", Part::Kind::triangles);
+  const Eigen::Matrix<double, 1, 12> last =
+      given.require_table("solid_transforms").rows.bottomRightCorner<1, 12>();
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> map(last.data());
+  // About the middle of its box, a quarter of a turn about z.
+  const Eigen::Vector3d middle =
+      (body.points.colwise().minCoeff() + body.points.colwise().maxCoeff()) / 2;
+  EXPECT_NEAR((map * middle.homogeneous() - middle - Eigen::Vector3d(0, 0, 0.04)).norm(), 0, 1e-12);
+  EXPECT_NEAR((map.leftCols<3>() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 0,
+              1e-12);
+}
+
 }  // namespace
 }  // namespace geoprior::fluid

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/mesh.h"
 #include "experiments/paper/topic.h"
 #include "tests/testbed/run_fixture.h"
 
@@ -169,6 +170,34 @@ TEST_F(PaperScenes, PatternsRunCounterClockwiseHoweverTheyAreGiven) {
   std::ofstream(drawing) << "<svg><path id='t' d='M0 0 h200 l-200 100z'/></svg>";
   EXPECT_NEAR(signed_area(sheet("pattern = { kind = \"svg\", file = \"triangle.svg\" }\n").pattern),
               0.01, 1e-15);
+}
+
+/// What it holds of the flat sheet goes where the hand takes it.
+TEST_F(PaperScenes, GiveHandsAsTheMapsOfWhatTheyHold) {
+  const PaperScene s = scene(
+      "pattern = { kind = \"rectangle\", width = 0.1, height = 0.1 }\nimperfection = 0\n"
+      "placement = { move = [0, 0, 0.3], turn_deg = [0, 90, 0] }\n"
+      "duration = 0.2\nframe_interval = 0.1\n[[scene.handles]]\nsegment = [-0.05, -0.05, -0.05, "
+      "0.05]\nkeys = [{ t = 0 }, { t = 0.2, move = [0, 0.01, 0.02], turn_deg = [0, 0, 30] }]\n");
+  const Frame given = s.given();
+  const Part& sheet = given.require_part("sheet", Part::Kind::triangles);
+  const Eigen::MatrixXd& handle =
+      given.require_array("sheet", "handle", NamedArray::On::points).values;
+  EXPECT_NEAR(triangle_areas(sheet.points, sheet.triangles).sum(), 0.01, 1e-12);
+  EXPECT_EQ(given.require_table("frames").rows.col(1), Eigen::Vector3d(0, 0.1, 0.2));
+  const Eigen::Matrix<double, 1, 12> last =
+      given.require_table("handle_transforms").rows.bottomRightCorner<1, 12>();
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> map(last.data());
+  const Eigen::Vector3d centre = s.sheet.placement * Eigen::Vector3d(-0.05, 0, 0);
+  int held = 0;
+  for (Eigen::Index v = 0; v < sheet.points.rows(); ++v) {
+    if (handle(v) < 0) continue;
+    const Eigen::Vector3d x = sheet.points.row(v);
+    EXPECT_NEAR((map * x.homogeneous() - s.sheet.handles[0].target(x, centre, 0.2)).norm(), 0,
+                1e-15);
+    ++held;
+  }
+  EXPECT_GE(held, 3);
 }
 
 }  // namespace
