@@ -12,20 +12,6 @@ std::string element_of(NamedArray::On on) {
   return on == NamedArray::On::points ? "point" : "cell";
 }
 
-std::string kind_name(Part::Kind kind) {
-  switch (kind) {
-    case Part::Kind::triangles:
-      return "triangles";
-    case Part::Kind::lines:
-      return "lines";
-    case Part::Kind::points:
-      return "points";
-    case Part::Kind::grid:
-      return "grid";
-  }
-  return "";
-}
-
 std::string components_text(Eigen::Index components) {
   return std::to_string(components) + (components == 1 ? " component" : " components");
 }
@@ -65,6 +51,20 @@ const Named* find(const std::map<std::string, Named>& named, const std::string& 
 }
 
 }  // namespace
+
+std::string kind_name(Part::Kind kind) {
+  switch (kind) {
+    case Part::Kind::triangles:
+      return "triangles";
+    case Part::Kind::lines:
+      return "lines";
+    case Part::Kind::points:
+      return "points";
+    case Part::Kind::grid:
+      return "grid";
+  }
+  return "";
+}
 
 Eigen::Index Part::count(NamedArray::On on) const {
   const bool of_points = on == NamedArray::On::points;

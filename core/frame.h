@@ -49,6 +49,9 @@ struct Part {
                                                 const std::string& where = "part") const;
 };
 
+/// "triangles", "lines", "points" or "grid".
+std::string kind_name(Part::Kind kind);
+
 /// A small table of numbers that belongs to a frame (pieces of a surface, steps of a solver).
 struct FrameTable {
   std::vector<std::string> columns;  ///< "name [unit]"

@@ -5,20 +5,18 @@ docs/figures.md (a block of kind `cost-control`) and draws docs/images/table-4-1
     python3 results/cost_control.py [--root FOLDER]       draws the picture where the records have changed
 """
 
-import argparse
 import hashlib
 import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import records
+import drawings
 import runfile
 from plots import METHOD_COLOR, STYLE, plt, to_svg
 from records import present
 from wording import interval, with_unit
 
-REPOSITORY = Path(__file__).resolve().parents[1]
 PICTURE = "docs/images/table-4-1.svg"
 REAL_TIME = 1 / 25  # s: what the thesis calls real time (1)
 HEAD = ["thesis", "a priori", "cost, by the thesis", "control, by the thesis", "measured here", "preparation", "a frame",
@@ -145,14 +143,13 @@ def drawing(published):
         draw_texts(left, published)
         draw_times(right, published)
         figure.tight_layout(w_pad=0)
-        return to_svg(figure).replace("<svg ", f"<!-- data {digest(published)} -->\n<svg ", 1)
+        return drawings.marked(to_svg(figure), digest(published))
 
 
 def problems(root, published):
     """A line where the picture shows other numbers than the records have; none where there is nothing to show."""
     path = Path(root) / PICTURE
-    if not any(times_of(system, published) for system in SYSTEMS) or (
-            path.is_file() and f"<!-- data {digest(published)} -->" in path.read_text(encoding="utf-8")):
+    if not any(times_of(system, published) for system in SYSTEMS) or drawings.shows(path, digest(published)):
         return []
     return [f"{PICTURE}: shows other numbers than the records have ('figures.py' draws it)"]
 
@@ -168,12 +165,7 @@ def write(root, published):
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=Path, default=REPOSITORY, help="the repository (default: this one)")
-    options = parser.parse_args(arguments)
-    for path in write(options.root, records.read_records(options.root)):
-        print(path)
-    return 0
+    return drawings.command(__doc__, write, arguments)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ a topic: a panel an experiment, a line a family of rivals (uniform meshes, then 
     python3 results/error_time.py [--root FOLDER]
 """
 
-import argparse
 import hashlib
 import json
 import math
@@ -12,12 +11,11 @@ from pathlib import Path
 
 from matplotlib.ticker import LogLocator, NullFormatter
 
-import records
+import drawings
 import runfile
 from plots import COLORS, DASHES, METHOD_COLOR, STYLE, drawn_name, plt, to_svg
 from wording import interval
 
-REPOSITORY = Path(__file__).resolve().parents[1]
 PICTURES = {"paper": "docs/images/paper-error-time.svg"}  # topic: picture
 COLUMNS = 4
 NEIGHBOURS = ["o", "s", "^"]  # of families
@@ -86,7 +84,7 @@ def drawing(studies):
                 labels.setdefault(label, handle)
         figure.legend(labels.values(), labels.keys(), loc="lower center", ncols=len(labels))
         figure.tight_layout(rect=(0, 0.4 / (2.8 * rows + 0.5), 1, 1))
-        return to_svg(figure).replace("<svg ", f"<!-- data {digest(studies)} -->\n<svg ", 1)
+        return drawings.marked(to_svg(figure), digest(studies))
 
 
 def picture_of(root, topic):
@@ -96,7 +94,7 @@ def picture_of(root, topic):
 def problem_of(root, published, topic):
     """A line where the picture shows other numbers than the records have; none where nothing was compared."""
     studies, path = matched_of(published, topic), picture_of(root, topic)
-    if not studies or (path.is_file() and f"<!-- data {digest(studies)} -->" in path.read_text(encoding="utf-8")):
+    if not studies or drawings.shows(path, digest(studies)):
         return ""
     return f"{PICTURES[topic]}: shows other numbers than the records have ('figures.py' draws it)"
 
@@ -118,12 +116,7 @@ def write(root, published):
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=Path, default=REPOSITORY, help="the repository (default: this one)")
-    options = parser.parse_args(arguments)
-    for path in write(options.root, records.read_records(options.root)):
-        print(path)
-    return 0
+    return drawings.command(__doc__, write, arguments)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ std::vector<std::string> with_transform_columns(std::vector<std::string> columns
   return columns;
 }
 
-std::vector<double> with_transform(std::vector<double> row, const Eigen::Isometry3d& transform) {
+std::vector<double> with_transform(std::vector<double> row, const Eigen::Affine3d& transform) {
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 4; ++c) row.push_back(transform(r, c));
   }

@@ -23,11 +23,11 @@ class TableBuilder {
   std::vector<double> values_;
 };
 
-/// The columns of a 3 x 4 matrix (R t), row by row, after others: it moves points from where they
-/// start, x -> R x + t.
+/// The columns of a 3 x 4 matrix (A t), row by row, after others: it moves points from where they
+/// start, x -> A x + t.
 std::vector<std::string> with_transform_columns(std::vector<std::string> columns);
 /// A row for them.
-std::vector<double> with_transform(std::vector<double> row, const Eigen::Isometry3d& transform);
+std::vector<double> with_transform(std::vector<double> row, const Eigen::Affine3d& transform);
 
 /// Table of the frames that methods record: columns "frame" and "time [s]".
 FrameTable frame_times(const std::vector<double>& times);

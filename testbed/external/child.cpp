@@ -21,9 +21,8 @@
 #include "core/error.h"
 #include "testbed/formats/system_reason.h"
 #include "testbed/runner/number_text.h"
+#include "testbed/runner/process/exec_words.h"
 #include "testbed/runner/process/stop.h"
-
-extern char** environ;  // NOLINT: POSIX
 
 namespace geoprior {
 namespace {
@@ -115,7 +114,7 @@ struct Launch {
   std::vector<char*> arguments;
   std::vector<char*> variables;
   const char* folder;
-  rlim_t largest_file;
+  rlim_t largest_file;  ///< bytes: one more than may be written, so that who is cut off is seen
   int errors;
   int report;  ///< the error number of a failed start goes here
 };
@@ -138,23 +137,13 @@ struct Launch {
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(nothing, STDOUT_FILENO);
   ::dup2(launch.errors, STDERR_FILENO);
+  // Whatever is open here (the journal, files of libraries) stays here.
+  ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   if (::chdir(launch.folder) == 0) {
     ::execvpe(launch.arguments.front(), launch.arguments.data(), launch.variables.data());
   }
   const int why = errno;
   ::_exit(::write(launch.report, &why, sizeof why) == sizeof why ? 127 : 126);
-}
-
-std::vector<char*> with_null(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
-std::vector<std::string> with_ours(std::vector<std::string> added) {
-  for (char** entry = environ; *entry != nullptr; ++entry) added.emplace_back(*entry);
-  return added;
 }
 
 /// The last bytes that a program wrote, read as they come so that it never waits for us.
@@ -201,8 +190,9 @@ class TailOfErrors {
 /// A command that was started.
 class RunningCommand {
  public:
-  RunningCommand(pid_t pid, const fs::path& folder, const CommandLimits& limits)
-      : pid_(pid), folder_(folder), limits_(limits) {
+  /// @param given  bytes that lie in the folder already
+  RunningCommand(pid_t pid, const fs::path& folder, double given, const CommandLimits& limits)
+      : pid_(pid), folder_(folder), given_(given), limits_(limits) {
     ::setpgid(pid, pid);  // as the child does: whoever is first
     end_with_us(-pid);
   }
@@ -254,7 +244,7 @@ class RunningCommand {
     return true;
   }
   void require_little(CommandEnd& end) const {
-    if (bytes_below(folder_) <= limits_.megabytes * kMegabyte) return;
+    if (bytes_below(folder_) - given_ <= limits_.megabytes * kMegabyte) return;
     end.failure = "wrote more than " + number_text(limits_.megabytes) + " MB (output_limit_MB)";
   }
   void kill_all() const {
@@ -264,6 +254,7 @@ class RunningCommand {
 
   pid_t pid_;
   fs::path folder_;
+  double given_;
   CommandLimits limits_;
   WallClock::time_point begin_ = WallClock::now();
   std::optional<int> status_;
@@ -287,16 +278,20 @@ CommandEnd run_external_command(const std::vector<std::string>& command, const f
                                 const CommandLimits& limits, const RunContext& context) {
   const Subreaper subreaper;
   Pipe errors, report;
-  std::vector<std::string> arguments = command, variables = with_ours(environment);
+  std::vector<std::string> arguments = command, variables = merged_environment(environment);
   const std::string working_folder = folder.string();
-  const Launch launch{with_null(arguments),   with_null(variables),
-                      working_folder.c_str(), static_cast<rlim_t>(limits.megabytes * kMegabyte),
-                      errors.ends[1],         report.ends[1]};
+  const Launch launch{null_terminated(arguments),
+                      null_terminated(variables),
+                      working_folder.c_str(),
+                      static_cast<rlim_t>(limits.megabytes * kMegabyte) + 1,
+                      errors.ends[1],
+                      report.ends[1]};
+  const double given = bytes_below(folder);
   const pid_t pid = ::fork();
   if (pid < 0) throw Error("cannot be started: " + system_reason(errno), command.front());
   if (pid == 0) become_command(launch);
   CommandEnd end;
-  RunningCommand running(pid, folder, limits);
+  RunningCommand running(pid, folder, given, limits);
   errors.close_writer();
   report.close_writer();
   int why = 0;

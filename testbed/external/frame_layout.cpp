@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "core/error.h"
 #include "testbed/external/part_file.h"
@@ -28,42 +27,6 @@ namespace fs = std::filesystem;
 using Entry = ExternalFrames::Entry;
 
 constexpr std::size_t kMostFrames = 1'000'000;
-
-/// Names in the first line of a table, as they stand there.
-std::vector<std::string> column_names(const fs::path& file) {
-  std::istringstream lines(read_text_file(file));
-  std::string line;
-  std::getline(lines, line);
-  std::vector<std::string> names;
-  std::istringstream cells(line);
-  for (std::string cell; std::getline(cells, cell, ',');) {
-    std::erase_if(cell, [](char c) { return c == '"' || c == ' ' || c == '\r'; });
-    names.push_back(cell);
-  }
-  return names;
-}
-
-/// A table whose columns are not known beforehand: `fixed` and the further ones of its first line.
-struct OpenTable {
-  std::vector<std::string> further;
-  CsvTable table;
-
-  OpenTable(const fs::path& file, const std::vector<std::string_view>& fixed)
-      : further(others(file, fixed)), table(file, fixed, views(further)) {}
-
- private:
-  static std::vector<std::string> others(const fs::path& file,
-                                         const std::vector<std::string_view>& fixed) {
-    std::vector<std::string> names = column_names(file);
-    std::erase_if(names, [&](const std::string& name) {
-      return name.empty() || std::find(fixed.begin(), fixed.end(), name) != fixed.end();
-    });
-    return names;
-  }
-  static std::vector<std::string_view> views(const std::vector<std::string>& names) {
-    return {names.begin(), names.end()};
-  }
-};
 
 /// Number of a frame in a column.
 std::size_t index_of(const CsvTable& table, const CsvTable::Row& row, const char* column) {
@@ -155,16 +118,16 @@ void read_pattern(const fs::path& pattern, const std::string& part, ExternalFram
 }
 
 void read_diagnostics(const fs::path& file, ExternalFrames& found) {
-  const OpenTable open(file, {"frame"});
+  const CsvTable table(file, {"frame"}, {}, CsvTable::Others::read);
   std::set<std::size_t> seen;
-  for (const CsvTable::Row& row : open.table.rows()) {
-    const std::size_t frame = index_of(open.table, row, "frame");
+  for (const CsvTable::Row& row : table.rows()) {
+    const std::size_t frame = index_of(table, row, "frame");
     if (frame >= found.frames.size() || !seen.insert(frame).second) {
       throw Error("frame " + std::to_string(frame) + " is there twice, or is none", row.place);
     }
-    for (const std::string& name : open.further) {
+    for (const std::string& name : table.others()) {
       require_plain_name(name, "a diagnostic", file.string());
-      if (const auto value = open.table.number(row, name)) {
+      if (const auto value = table.number(row, name)) {
         found.frames[frame].diagnostics[name] = *value;
       }
     }
@@ -172,18 +135,19 @@ void read_diagnostics(const fs::path& file, ExternalFrames& found) {
 }
 
 std::vector<Event> read_events_csv(const fs::path& file) {
-  const OpenTable open(file, {"time_s", "kind", "x", "y", "z", "energy_J", "duration_s"});
+  const CsvTable table(file, {"time_s", "kind", "x", "y", "z", "energy_J", "duration_s"}, {},
+                       CsvTable::Others::read);
   std::vector<Event> events;
-  for (const CsvTable::Row& row : open.table.rows()) {
-    const auto number = [&](const char* column) { return *open.table.number(row, column); };
+  for (const CsvTable::Row& row : table.rows()) {
+    const auto number = [&](const char* column) { return *table.number(row, column); };
     Event event;
     event.time_s = number("time_s");
-    event.kind = *open.table.text(row, "kind");
+    event.kind = *table.text(row, "kind");
     event.position = {number("x"), number("y"), number("z")};
     event.energy_J = number("energy_J");
     event.duration_s = number("duration_s");
-    for (const std::string& name : open.further) {
-      if (const auto value = open.table.number(row, name)) event.numbers[name] = *value;
+    for (const std::string& name : table.others()) {
+      if (const auto value = table.number(row, name)) event.numbers[name] = *value;
     }
     require_event_numbers(event, row.place);
     events.push_back(std::move(event));
@@ -274,19 +238,6 @@ ExternalFrames find_in_layout(const ExternalOptions& options, const fs::path& ro
   return found;
 }
 
-std::string exact(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
-}
-
-/// A name or kind as a cell.
-std::string cell(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 /// Names that any of the maps has, in order.
 template <class Rows, class Map>
 std::set<std::string> names_of(const Rows& rows, Map map_of) {
@@ -302,7 +253,7 @@ std::string cells_of(const std::map<std::string, double>& values,
   std::string text;
   for (const std::string& name : names) {
     const auto found = values.find(name);
-    text += "," + (found == values.end() ? "" : exact(found->second));
+    text += "," + (found == values.end() ? "" : number_text(found->second));
   }
   return text;
 }
@@ -310,7 +261,7 @@ std::string cells_of(const std::map<std::string, double>& values,
 std::string frames_csv(const std::vector<double>& parameters) {
   std::string text = "frame,parameter\n";
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    text += std::to_string(i) + "," + exact(parameters[i]) + "\n";
+    text += std::to_string(i) + "," + number_text(parameters[i]) + "\n";
   }
   return text;
 }
@@ -334,10 +285,10 @@ std::string events_csv(const std::vector<Event>& events) {
   for (const std::string& name : names) text += "," + name;
   text += "\n";
   for (const Event& event : events) {
-    text += exact(event.time_s) + "," + cell(event.kind);
+    text += number_text(event.time_s) + "," + quoted_cell(event.kind);
     for (const double x : {event.position.x(), event.position.y(), event.position.z(),
                            event.energy_J, event.duration_s}) {
-      text += "," + exact(x);
+      text += "," + number_text(x);
     }
     text += cells_of(event.numbers, names) + "\n";
   }
@@ -345,15 +296,6 @@ std::string events_csv(const std::vector<Event>& events) {
 }
 
 }  // namespace
-
-std::vector<fs::path> ExternalFrames::files() const {
-  std::vector<fs::path> all;
-  for (const Entry& entry : frames) {
-    for (const Piece& piece : entry.pieces) all.push_back(piece.file);
-  }
-  for (const Piece& piece : artifacts) all.push_back(piece.file);
-  return all;
-}
 
 ExternalFrames find_external_frames(const ExternalOptions& options, const fs::path& base,
                                     const std::string& default_part, const Scene& scene) {

@@ -37,9 +37,6 @@ struct ExternalFrames {
   std::vector<Entry> frames;
   std::vector<Event> events;
   std::vector<Piece> artifacts;
-
-  /// All of them, for the record.
-  [[nodiscard]] std::vector<std::filesystem::path> files() const;
 };
 
 /// Finds what `options.frames` means.

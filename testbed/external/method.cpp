@@ -1,6 +1,7 @@
 #include "testbed/external/method.h"
 
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -34,12 +35,13 @@ std::string at_site(const std::string& text, const MethodSite& site) {
   return replaced(replaced(text, "{case}", site.case_name), "{variant}", site.variant);
 }
 
-/// An argument that is a file beside the experiment file is that file, wherever the program runs.
-std::string argument_at(const std::string& argument, const MethodSite& site) {
+/// The file beside the experiment file that an argument names, wherever the program runs; absent:
+/// it is a word.
+std::optional<fs::path> file_of(const std::string& argument, const MethodSite& site) {
   const fs::path file = fs::absolute(site.folder / argument).lexically_normal();
   std::error_code ignored;
-  const bool is_file = !argument.empty() && fs::is_regular_file(file, ignored);
-  return is_file ? file.string() : at_site(argument, site);
+  if (argument.empty() || !fs::is_regular_file(file, ignored)) return std::nullopt;
+  return file;
 }
 
 const ExternalOptions& external_options(const OptionSet& options) {
@@ -123,7 +125,8 @@ class ExternalProcess final : public Process {
   CommandEnd started(RunContext& context) const {
     std::vector<std::string> command;
     for (const std::string& argument : options_.command) {
-      command.push_back(argument_at(argument, site_));
+      const auto file = file_of(argument, site_);
+      command.push_back(file ? file->string() : at_site(argument, site_));
     }
     const fs::path work = fs::absolute(site_.work);
     return run_external_command(command, work,
@@ -213,8 +216,7 @@ std::vector<fs::path> external_inputs(const MethodSite& site, const OptionSet& s
   const ExternalOptions& options = external_options(set);
   std::vector<fs::path> files;
   for (const std::string& argument : options.command) {
-    const std::string at = argument_at(argument, site);
-    if (at != at_site(argument, site)) files.emplace_back(at);
+    if (const auto file = file_of(argument, site)) files.push_back(*file);
   }
   if (options.correspondence) files.push_back(site.folder / *options.correspondence);
   return files;

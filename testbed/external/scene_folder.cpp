@@ -48,20 +48,6 @@ std::string npy_bytes(const Rows& rows, const char* type) {
   return bytes;
 }
 
-const char* kind_text(Part::Kind kind) {
-  switch (kind) {
-    case Part::Kind::triangles:
-      return "triangles";
-    case Part::Kind::lines:
-      return "lines";
-    case Part::Kind::points:
-      return "points";
-    case Part::Kind::grid:
-      return "grid";
-  }
-  return "";
-}
-
 /// Writes files below a folder and says their names relative to it.
 class SceneWriter {
  public:
@@ -71,7 +57,7 @@ class SceneWriter {
 
   Json part(const std::string& name, const Part& part) const {
     require_name(name, "a part", "scene");
-    Json json{{"kind", kind_text(part.kind)}};
+    Json json{{"kind", kind_name(part.kind)}};
     json["file"] = put(name + part_extension(part), part_to_vtk_xml(part, 0));
     if (part.kind != Part::Kind::grid) {
       json["points"] = put(name + ".points.npy", npy_text(Eigen::MatrixXd(part.points)));
@@ -124,7 +110,7 @@ class SceneWriter {
 Json shape_json(const Scene& scene) {
   Json shapes = Json::array();
   for (const PartShape& shape : scene.frame_shape()) {
-    Json json{{"part", shape.part}, {"kind", kind_text(shape.kind)}};
+    Json json{{"part", shape.part}, {"kind", kind_name(shape.kind)}};
     json["vertices"] = shape.vertices ? Json(*shape.vertices) : Json(nullptr);
     shapes.push_back(std::move(json));
   }

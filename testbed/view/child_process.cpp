@@ -13,36 +13,15 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "core/error.h"
+#include "testbed/runner/process/exec_words.h"
 #include "testbed/runner/process/stop.h"
-
-extern char** environ;  // NOLINT: POSIX
 
 namespace geoprior {
 namespace {
-
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> out;
-  for (std::string& text : texts) out.push_back(text.data());
-  out.push_back(nullptr);
-  return out;
-}
-
-std::vector<std::string> merged_environment(const std::vector<std::string>& added) {
-  std::vector<std::string> out = added;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string_view text = *entry;
-    const std::string_view name = text.substr(0, text.find('=') + 1);
-    bool replaced = false;
-    for (const std::string& a : added) replaced = replaced || std::string_view(a).starts_with(name);
-    if (!replaced) out.emplace_back(text);
-  }
-  return out;
-}
 
 constexpr auto kPatience = std::chrono::seconds(5);  ///< between SIGTERM and SIGKILL
 
@@ -165,8 +144,9 @@ ChildResult run_child(const std::vector<std::string>& command,
   posix_spawnattr_init(&attributes);
   set_usual_signals(attributes);
   pid_t pid = 0;
-  const int failure = ::posix_spawnp(&pid, command.front().c_str(), &actions, &attributes,
-                                     pointers(arguments).data(), pointers(variables).data());
+  const int failure =
+      ::posix_spawnp(&pid, command.front().c_str(), &actions, &attributes,
+                     null_terminated(arguments).data(), null_terminated(variables).data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   ::close(errors[1]);

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/geometry/topology.h"
 #include "experiments/skinning/scene/scene_view.h"
+#include "testbed/given_tables.h"
 
 namespace geoprior::skinning {
 namespace {
@@ -168,26 +169,14 @@ Frame SkinningScene::given() const {
   }
   bones.arrays = {std::move(joint), std::move(parent)};
 
-  FrameTable& transforms = frame.tables["transforms"];
-  transforms.columns = {"frame", "joint"};
-  for (const char* row : {"x", "y", "z"}) {
-    for (const char* column : {"x", "y", "z"}) {
-      transforms.columns.push_back(std::string(row) + "_from_" + column);
-    }
-    transforms.columns.push_back(std::string(row) + "_shift [m]");
-  }
-  constexpr Eigen::Index kOfMatrix = 12;
-  transforms.rows.resize(std::ssize(frame_pose) * joints, 2 + kOfMatrix);
-  Eigen::Index at = 0;
+  TableBuilder transforms(with_transform_columns({"frame", "joint"}));
   for (std::size_t f = 0; f < frame_pose.size(); ++f) {
-    for (int j = 0; j < joints; ++j, ++at) {
-      const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> matrix =
-          frame_pose[f][j].matrix().topRows<3>();
-      transforms.rows(at, 0) = static_cast<double>(f);
-      transforms.rows(at, 1) = j;
-      transforms.rows.row(at).tail<kOfMatrix>() = matrix.reshaped<Eigen::RowMajor>().transpose();
+    for (std::size_t j = 0; j < frame_pose[f].size(); ++j) {
+      transforms.add(
+          with_transform({static_cast<double>(f), static_cast<double>(j)}, frame_pose[f][j]));
     }
   }
+  frame.tables["transforms"] = transforms.finished();
   return frame;
 }
 

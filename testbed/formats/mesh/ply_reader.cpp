@@ -136,9 +136,11 @@ std::optional<ComponentName> component_name(const std::string& property) {
 /// Numbers of an element beside its coordinates or corners, row by row.
 class FurtherProperties {
  public:
+  /// @param part  gets them; null: they are skipped
   FurtherProperties(const Element& element, const std::vector<std::size_t>& known,
-                    NamedArray::On on)
-      : on_(on) {
+                    NamedArray::On on, Part* part)
+      : on_(on), part_(part) {
+    if (part == nullptr) return;
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const bool is_known = std::find(known.begin(), known.end(), p) != known.end();
       if (is_known || element.properties[p].count) continue;
@@ -149,8 +151,8 @@ class FurtherProperties {
   void add(const std::vector<double>& row) {
     for (Column& column : columns_) column.values.push_back(row[column.property]);
   }
-  /// Adds them as arrays.
-  void take(std::vector<NamedArray>& arrays) const {
+  /// Adds them to the part as arrays.
+  void finish() const {
     for (std::size_t first = 0; first < columns_.size();) {
       const auto head = component_name(columns_[first].name);
       std::size_t end = first + 1;
@@ -171,7 +173,7 @@ class FurtherProperties {
         array.values.col(static_cast<Eigen::Index>(c - first)) = Eigen::Map<const Eigen::VectorXd>(
             columns_[c].values.data(), std::ssize(columns_[c].values));
       }
-      arrays.push_back(std::move(array));
+      part_->arrays.push_back(std::move(array));
       first = end;
     }
   }
@@ -183,6 +185,7 @@ class FurtherProperties {
     std::vector<double> values;
   };
   NamedArray::On on_;
+  Part* part_;
   std::vector<Column> columns_;
 };
 
@@ -244,7 +247,7 @@ class ElementReader {
     const bool moving = u && v && w;
     std::vector<double> row(element.properties.size());
     soup_.points.reserve(element.count);
-    FurtherProperties further(element, {*x, *y, *z}, NamedArray::On::points);
+    FurtherProperties further(element, {*x, *y, *z}, NamedArray::On::points, part_);
     const auto finite = [&](Eigen::Vector3d vector, const char* what) {
       if (vector.allFinite()) return vector;
       throw Error(std::string(what) + " of vertex " + std::to_string(soup_.points.size()) +
@@ -258,9 +261,9 @@ class ElementReader {
             soup_.velocity.push_back(finite({row[*u], row[*v], row[*w]}, "velocity"));
           }
           soup_.points.push_back(finite({row[*x], row[*y], row[*z]}, "position"));
-          if (part_ != nullptr) further.add(row);
+          further.add(row);
         });
-    if (part_ != nullptr) further.take(part_->arrays);
+    further.finish();
   }
 
   void faces(const Element& element) {
@@ -270,7 +273,7 @@ class ElementReader {
     }
     soup_.ends.reserve(element.count);
     std::vector<double> row(element.properties.size());
-    FurtherProperties further(element, {*corners}, NamedArray::On::cells);
+    FurtherProperties further(element, {*corners}, NamedArray::On::cells, part_);
     rows(
         element,
         [&](std::size_t p, double value) {
@@ -281,10 +284,10 @@ class ElementReader {
         },
         [&] {
           soup_.end_face();
-          if (part_ != nullptr) further.add(row);
+          further.add(row);
         });
     const bool all_triangles = soup_.corners.size() == 3 * soup_.ends.size();
-    if (part_ != nullptr && all_triangles) further.take(part_->arrays);
+    if (all_triangles) further.finish();
   }
 
   /// Pairs of vertices, each a line of its own.
@@ -292,7 +295,7 @@ class ElementReader {
     const auto first = element.find({"vertex1"}), second = element.find({"vertex2"});
     if (!first || !second) throw Error("its edges have no vertex1, vertex2", values_.place());
     std::vector<double> row(element.properties.size());
-    FurtherProperties further(element, {*first, *second}, NamedArray::On::cells);
+    FurtherProperties further(element, {*first, *second}, NamedArray::On::cells, part_);
     const auto vertex = [&](double value) {
       const int v = integer(value, "index of a vertex", values_);
       if (v >= 0 && v < std::ssize(soup_.points)) return v;
@@ -306,7 +309,7 @@ class ElementReader {
           part_->lines.push_back({vertex(row[*first]), vertex(row[*second])});
           further.add(row);
         });
-    further.take(part_->arrays);
+    further.finish();
   }
 
   /// Lists of vertices, each with the two before it a triangle, every second one turned over; -1

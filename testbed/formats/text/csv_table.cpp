@@ -120,7 +120,7 @@ std::string known(const std::vector<std::string>& columns, std::size_t required)
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::string_view>& required,
-                   const std::vector<std::string_view>& optional)
+                   const std::vector<std::string_view>& optional, Others others)
     : columns_(required.begin(), required.end()), required_(required.size()) {
   columns_.insert(columns_.end(), optional.begin(), optional.end());
   const std::string text = read_text_file(file);
@@ -132,7 +132,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
   while (scan.next(separator_, cells)) {
     if (cells.empty()) continue;
     if (at_.empty()) {
-      read_header(cells, scan.place());
+      read_header(cells, scan.place(), others);
       width = cells.size();
       continue;
     }
@@ -142,13 +142,20 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
   if (at_.empty()) throw Error("is empty", name, "a line of columns, then rows");
 }
 
-void CsvTable::read_header(const std::vector<std::string>& header, const std::string& place) {
+void CsvTable::read_header(const std::vector<std::string>& header, const std::string& place,
+                           Others others) {
   at_.resize(columns_.size());
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto named = std::find_if(columns_.begin(), columns_.end(), [&](const auto& column) {
       return lower(column) == lower(header[i]);
     });
-    if (named == columns_.end()) continue;
+    if (named == columns_.end()) {
+      if (others == Others::left_out || header[i].empty()) continue;
+      columns_.push_back(header[i]);
+      others_.push_back(header[i]);
+      at_.emplace_back(i);
+      continue;
+    }
     std::optional<std::size_t>& at = at_[named - columns_.begin()];
     if (at) throw Error("names the column '" + header[i] + "' twice", place, "each once");
     at = i;

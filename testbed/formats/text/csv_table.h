@@ -19,6 +19,9 @@ namespace geoprior {
 ///   and columns that nobody asks for are not read.
 class CsvTable {
  public:
+  /// What becomes of the columns that nobody asked for.
+  enum class Others { left_out, read };
+
   struct Row {
     std::vector<std::string> cells;
     std::string place;  ///< "file:line"
@@ -29,21 +32,24 @@ class CsvTable {
   /// @throws Error    naming file and line: unreadable, empty, a column that is missing or is there
   ///                  twice, a row with more cells than columns, quotes that are not closed
   CsvTable(const std::filesystem::path& file, const std::vector<std::string_view>& required,
-           const std::vector<std::string_view>& optional);
+           const std::vector<std::string_view>& optional, Others others = Others::left_out);
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// The cell of a column, one of those named to the constructor; absent when it is optional and
-  /// the file has no such column, or the cell is empty.
+  /// The other columns that are read, in the order of the file; their names as they stand there.
+  [[nodiscard]] const std::vector<std::string>& others() const { return others_; }
+  /// The cell of a column, one of those named to the constructor, or of the others; absent when it
+  /// is optional and the file has no such column, or the cell is empty.
   /// @throws Error  for a row that is too short, and an empty cell of a required column
   [[nodiscard]] std::optional<std::string> text(const Row& row, std::string_view column) const;
   /// The same as a number. @throws Error  also for a word that is no finite number
   [[nodiscard]] std::optional<double> number(const Row& row, std::string_view column) const;
 
  private:
-  void read_header(const std::vector<std::string>& header, const std::string& place);
+  void read_header(const std::vector<std::string>& header, const std::string& place, Others others);
   void require_no_more_cells(const Row& row, std::size_t columns) const;
 
   std::vector<std::string> columns_;
+  std::vector<std::string> others_;             ///< the last of `columns_`
   std::size_t required_;                        ///< of them
   std::vector<std::optional<std::size_t>> at_;  ///< of each column in a row
   std::vector<Row> rows_;

@@ -232,7 +232,7 @@ class ValueComparison {
     visit_values(before_,
                  [&](const auto& in, const auto& variant, const auto& name, const GatedValue& old) {
                    ValueChange value{Change::changed, in, variant, name, old.unit};
-                   const GatedValue* now = find_in(after_, in, variant, name);
+                   const GatedValue* now = find_value(after_, in, variant, name);
                    value.before = old.value;
                    value.after = now == nullptr ? kNoSuchValue : now->value;
                    if (now != nullptr && now->unit != old.unit) {
@@ -243,22 +243,12 @@ class ValueComparison {
                  });
     visit_values(after_,
                  [&](const auto& in, const auto& variant, const auto& name, const GatedValue& now) {
-                   if (find_in(before_, in, variant, name) != nullptr) return;
+                   if (find_value(before_, in, variant, name) != nullptr) return;
                    ValueChange value{Change::changed, in, variant, name, now.unit};
                    value.before = kNoSuchValue;
                    value.after = now.value;
                    visit(value, false);
                  });
-  }
-
-  static const GatedValue* find_in(const GatedValues& values, const std::string& in,
-                                   const std::string& variant, const std::string& name) {
-    const auto of_case = values.find(in);
-    if (of_case == values.end()) return nullptr;
-    const auto of_variant = of_case->second.find(variant);
-    if (of_variant == of_case->second.end()) return nullptr;
-    const auto value = of_variant->second.find(name);
-    return value == of_variant->second.end() ? nullptr : &value->second;
   }
 
   void judge(ValueChange value, bool both, RunComparison& result) const {

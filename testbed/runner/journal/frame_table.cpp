@@ -11,17 +11,6 @@ namespace geoprior {
 
 namespace {
 
-/// "a","b ""quoted""" as in RFC 4180.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '\n' || c == '\r') throw Error("the name of a column has a line break: " + text);
-    if (c == '"') out += c;
-    out += c;
-  }
-  return out + "\"";
-}
-
 std::vector<std::string> split_header(const std::string& line, const std::string& where) {
   std::vector<std::string> names;
   std::size_t i = 0;
@@ -42,6 +31,16 @@ std::vector<std::string> split_header(const std::string& line, const std::string
 
 }  // namespace
 
+std::string quoted_cell(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\n' || c == '\r') throw Error("a cell has a line break: " + text);
+    if (c == '"') out += c;
+    out += c;
+  }
+  return out + "\"";
+}
+
 std::string table_to_csv(const FrameTable& table) {
   const std::size_t columns = table.rows.cols();
   if (columns != table.columns.size() && table.rows.rows() > 0) {
@@ -51,7 +50,7 @@ std::string table_to_csv(const FrameTable& table) {
   std::string text;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (c > 0) text += ',';
-    text += quoted(table.columns[c]);
+    text += quoted_cell(table.columns[c]);
   }
   text += '\n';
   for (Eigen::Index row = 0; row < table.rows.rows(); ++row) {

@@ -85,6 +85,14 @@ def parameters(rows):
     frames()
     open("out/frames.csv", "w").write("frame,parameter\n" + rows)
 
+def look_about():
+    """Fails where something of the run is open to it."""
+    open_here = {os.path.realpath(f"/proc/self/fd/{fd}") for fd in os.listdir("/proc/self/fd")}
+    open_here = {name for name in open_here if "/pipe:" not in name and not name.startswith("/proc/")}
+    if open_here != {"/dev/null"}:
+        sys.exit(f"open: {open_here}")
+    frames()
+
 def link_out():
     frames()
     os.symlink("/etc/passwd", "out/frames/other_0000.csv")
@@ -108,6 +116,7 @@ def link_out():
     "double": lambda: parameters("0,0\n1,30\n1,60\n"),
     "other-case": lambda: parameters("0,0\n1,45\n2,90\n"),
     "link": link_out,
+    "look-about": look_about,
 }[sys.argv[1]]()
 '''
 
@@ -131,6 +140,7 @@ SAID = {
     "double": r"frames\.csv:4: frame 1 is there twice",
     "other-case": r"frame 1 is at angle 45, that of the scene at 30 deg: are these frames of another case\?",
     "link": r"link",
+    "look-about": None,
 }
 
 
@@ -227,6 +237,12 @@ class Commands(unittest.TestCase):
             self.assertTrue((given / name).is_file(), name)
         self.assertTrue((given / "reference/frames/surface_0002.vtp").is_file())
         self.assertNotEqual(list(faults(scene | {"seed": "one"}, schema)), [])
+
+    def test_what_a_program_is_given_is_not_what_it_wrote(self):
+        # Scene and reference are larger than the limit; its frames are not.
+        options = command(PYTHON, "behaviour.py", "good", more=", output_limit_MB = 0.03")
+        self.run_variants({"small": options + ' }\nreference = "linear-blend"\n#{'}, "--allow-commands")
+        self.assertEqual(self.statuses()["small"], ("done", 3, ""))
 
     def test_a_correspondence_puts_vertices_in_order(self):
         (self.folder / "turned.py").write_text(BEHAVIOUR.replace("text = head.encode() + (spoil(i, points) if spoil "

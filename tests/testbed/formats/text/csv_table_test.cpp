@@ -37,6 +37,19 @@ TEST_F(CsvTables, DecimalCommasBetweenCommasAreRefused) {
   EXPECT_EQ(table("x,name\n0.5,a,,\n").rows().size(), 1U) << "empty cells at the end";
 }
 
+TEST_F(CsvTables, OtherColumnsAreReadWhereTheyAreWanted) {
+  const auto open = [&](const std::string& text) {
+    return CsvTable(write("a.csv", text), {"x"}, {}, CsvTable::Others::read);
+  };
+  const CsvTable t = open("area_m2;X;\"depth, m\";\n0,5;1;;\n# a word\n;2;3;\n");
+  EXPECT_EQ(t.others(), (std::vector<std::string>{"area_m2", "depth, m"}));
+  EXPECT_EQ(t.number(t.rows()[0], "area_m2"), 0.5);
+  EXPECT_EQ(t.number(t.rows()[0], "depth, m"), std::nullopt);
+  EXPECT_EQ(t.number(t.rows()[1], "depth, m"), 3);
+  expect_error([&] { (void)open("x,a,A\n"); }, {"a.csv:1", "names the column 'A' twice"});
+  EXPECT_TRUE(table("x,name,area\n").others().empty());
+}
+
 TEST_F(CsvTables, TabsSeparateWhereNothingElseDoes) {
   const CsvTable t = table("x\tname\tweight\n1.5\ta b\t\n");
   EXPECT_EQ(t.text(t.rows()[0], "name"), "a b");
