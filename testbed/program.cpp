@@ -34,8 +34,8 @@ constexpr const char* kFooter = R"(Examples:
   geoprior report skinning/knee
   geoprior compare RUN_FOLDER skinning/knee
 
-Exit codes: 0 done; 1 a check or a claim fell short; 2 wrong use, bad input, or stopped by Ctrl-C
-(the run can be resumed); 3 internal error.)";
+Exit codes: 0 done; 1 a check or a claim fell short, or a comparison found less quality; 2 wrong use,
+bad input, or stopped by Ctrl-C (the run can be resumed); 3 internal error.)";
 
 /// Everything that the command line can say.
 struct CommandLine {

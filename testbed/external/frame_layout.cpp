@@ -28,6 +28,18 @@ using Entry = ExternalFrames::Entry;
 
 constexpr std::size_t kMostFrames = 1'000'000;
 
+// Files and folders of the layout.
+constexpr const char* kParameters = "frames.csv";
+constexpr const char* kDiagnostics = "diagnostics.csv";
+constexpr const char* kEvents = "events.csv";
+constexpr const char* kFrames = "frames";
+constexpr const char* kArtifacts = "artifacts";
+
+/// Whether the option means numbered files, not a folder.
+bool is_pattern(const ExternalOptions& options) {
+  return options.frames.find('%') != std::string::npos;
+}
+
 /// Number of a frame in a column.
 std::size_t index_of(const CsvTable& table, const CsvTable::Row& row, const char* column) {
   const double x = *table.number(row, column);
@@ -90,7 +102,7 @@ void read_pieces(const fs::path& folder, ExternalFrames& found) {
     const std::string extension = file.extension().string();
     if (extension != ".csv" && !is_part_extension(extension)) continue;
     if (const std::string name = file.filename().string();
-        name == "frames.csv" || name == "events.csv" || name == "diagnostics.csv") {
+        name == kParameters || name == kEvents || name == kDiagnostics) {
       continue;
     }
     const PieceName piece = piece_name(file);
@@ -205,7 +217,7 @@ void find_parameters(const ExternalOptions& options, const fs::path& folder, con
   std::error_code ignored;
   if (!options.parameters.empty()) {
     set_parameters(options.parameters, "the option parameters", found);
-  } else if (const fs::path file = folder / "frames.csv"; fs::exists(file, ignored)) {
+  } else if (const fs::path file = folder / kParameters; fs::exists(file, ignored)) {
     set_parameters(parameters_of_file(file), file.string(), found);
   }
   require_parameters_of_scene(scene, found);
@@ -220,20 +232,20 @@ ExternalFrames find_in_layout(const ExternalOptions& options, const fs::path& ro
   ExternalFrames found;
   found.root = root;
   std::error_code ignored;
-  const bool has_room = fs::is_directory(root / "frames", ignored);
-  read_pieces(has_room ? path_below(root, "frames") : root, found);
+  const bool has_room = fs::is_directory(root / kFrames, ignored);
+  read_pieces(has_room ? path_below(root, kFrames) : root, found);
   require_no_gaps(found);
   find_parameters(options, root, scene, found);
-  if (fs::exists(root / "diagnostics.csv", ignored)) {
-    read_diagnostics(path_below(root, "diagnostics.csv"), found);
+  if (fs::exists(root / kDiagnostics, ignored)) {
+    read_diagnostics(path_below(root, kDiagnostics), found);
   }
-  if (fs::exists(root / "events.csv", ignored)) {
-    found.events = read_events_csv(path_below(root, "events.csv"));
+  if (fs::exists(root / kEvents, ignored)) {
+    found.events = read_events_csv(path_below(root, kEvents));
   }
-  for (const fs::path& file : sorted_entries(root / "artifacts")) {
+  for (const fs::path& file : sorted_entries(root / kArtifacts)) {
     const std::string name = file.filename().string();
     require_name(name, "an artifact", file.string());
-    found.artifacts.push_back({name, path_below(root, fs::path("artifacts") / name)});
+    found.artifacts.push_back({name, path_below(root, fs::path(kArtifacts) / name)});
   }
   return found;
 }
@@ -300,7 +312,7 @@ std::string events_csv(const std::vector<Event>& events) {
 ExternalFrames find_external_frames(const ExternalOptions& options, const fs::path& base,
                                     const std::string& default_part, const Scene& scene) {
   const fs::path path = (base / options.frames).lexically_normal();
-  if (options.frames.find('%') == std::string::npos) {
+  if (!is_pattern(options)) {
     std::error_code ignored;
     if (!fs::is_directory(path, ignored)) {
       throw Error(fs::exists(path, ignored) ? "is no folder" : "there is no such folder",
@@ -314,6 +326,31 @@ ExternalFrames find_external_frames(const ExternalOptions& options, const fs::pa
   require_no_gaps(found);
   find_parameters(options, path.parent_path(), scene, found);
   return found;
+}
+
+std::vector<fs::path> files_of_external_frames(const ExternalOptions& options,
+                                               const fs::path& base) {
+  const fs::path path = (base / options.frames).lexically_normal();
+  std::vector<fs::path> files;
+  const auto add_if_file = [&](const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored)) files.push_back(file);
+  };
+  if (is_pattern(options)) {
+    if (!matches_any(path)) return files;
+    for (const FoundFile& found : find_pattern(path).files) add_if_file(found.file);
+    add_if_file(path.parent_path() / kParameters);
+    return files;
+  }
+  for (const fs::path& folder : {path, path / kFrames, path / kArtifacts}) {
+    for (const fs::path& file : sorted_entries(folder)) {
+      const std::string extension = file.extension().string();
+      if (folder.filename() == kArtifacts || extension == ".csv" || is_part_extension(extension)) {
+        add_if_file(file);
+      }
+    }
+  }
+  return files;
 }
 
 Frame read_external_frame(const Entry& entry) {
@@ -422,16 +459,16 @@ void write_layout(const fs::path& folder, const VariantRecord& variant, LayoutPa
     }
     for (const StoredFile& stored : variant.frames[i].files) {
       const bool is_table = fs::path(stored.name).extension() == ".csv";
-      if (is_table || parts == LayoutParts::as_recorded) copy(stored, "frames");
+      if (is_table || parts == LayoutParts::as_recorded) copy(stored, kFrames);
     }
   }
   make_folders(folder);
-  write_file_atomically(folder / "frames.csv", frames_csv(parameters));
-  write_file_atomically(folder / "diagnostics.csv", diagnostics_csv(diagnostics));
+  write_file_atomically(folder / kParameters, frames_csv(parameters));
+  write_file_atomically(folder / kDiagnostics, diagnostics_csv(diagnostics));
   if (!variant.events.empty()) {
-    write_file_atomically(folder / "events.csv", events_csv(variant.events));
+    write_file_atomically(folder / kEvents, events_csv(variant.events));
   }
-  for (const StoredFile& stored : variant.artifacts) copy(stored, "artifacts");
+  for (const StoredFile& stored : variant.artifacts) copy(stored, kArtifacts);
 }
 
 }  // namespace geoprior

@@ -48,6 +48,10 @@ ExternalFrames find_external_frames(const ExternalOptions& options,
                                     const std::filesystem::path& base,
                                     const std::string& default_part, const Scene& scene);
 
+/// The files that `find_external_frames` would look at, whatever they hold; none where nothing is.
+std::vector<std::filesystem::path> files_of_external_frames(const ExternalOptions& options,
+                                                            const std::filesystem::path& base);
+
 /// Reads one frame. @throws Error  naming the file: unreadable, not finite, or of a time that is
 /// not the frame's
 Frame read_external_frame(const ExternalFrames::Entry& entry);

@@ -213,10 +213,16 @@ class ExternalProcess final : public Process {
 
 /// Files of the experiment's folder that make the result; frames of a command are its own.
 std::vector<fs::path> external_inputs(const MethodSite& site, const OptionSet& set) {
-  const ExternalOptions& options = external_options(set);
+  ExternalOptions options = external_options(set);
+  options.frames = at_site(options.frames, site);
   std::vector<fs::path> files;
   for (const std::string& argument : options.command) {
     if (const auto file = file_of(argument, site)) files.push_back(*file);
+  }
+  if (options.command.empty()) {
+    for (const fs::path& file : files_of_external_frames(options, site.folder)) {
+      files.push_back(file);
+    }
   }
   if (options.correspondence) files.push_back(site.folder / *options.correspondence);
   return files;

@@ -205,17 +205,8 @@ void finish(const Experiment& experiment, const std::vector<Topic>& topics, bool
   if (undecided) throw Error(*undecided);
 }
 
-/// Whether another program failed there: it may have been mended since.
 bool failed_outside(const VariantRecord& variant, const Topic& topic) {
   return variant.status == "failed" && method_of(topic, variant.method).make_at;
-}
-
-bool has_failed_outside(const RunRecord& record, const Topic& topic) {
-  return std::any_of(record.cases.begin(), record.cases.end(), [&](const CaseRecord& one) {
-    return std::any_of(one.variants.begin(), one.variants.end(), [&](const VariantRecord& variant) {
-      return failed_outside(variant, topic);
-    });
-  });
 }
 
 /// Variants that failed outside of the program begin anew.
@@ -292,6 +283,14 @@ void discard(const fs::path& folder, bool chosen_by_us) {
 }
 
 }  // namespace
+
+bool has_failed_outside(const RunRecord& record, const Topic& topic) {
+  return std::any_of(record.cases.begin(), record.cases.end(), [&](const CaseRecord& one) {
+    return std::any_of(one.variants.begin(), one.variants.end(), [&](const VariantRecord& variant) {
+      return failed_outside(variant, topic);
+    });
+  });
+}
 
 ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& topics,
                        const ExecuteRequest& request, const InputMaker& make_input) {

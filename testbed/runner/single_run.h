@@ -22,4 +22,8 @@ struct ExecuteResult {
 ExecuteResult run_once(const Experiment& experiment, const std::vector<Topic>& topics,
                        const ExecuteRequest& request, const InputMaker& make_input);
 
+/// Whether a variant failed because of another program or its files, which may have been mended
+/// since: `--resume` runs it again.
+bool has_failed_outside(const RunRecord& record, const Topic& topic);
+
 }  // namespace geoprior

@@ -22,11 +22,21 @@ namespace {
 /// An experiment with its times, and without.
 using Forms = std::array<Experiment, 2>;
 
-std::optional<fs::path> find_finished(const Forms& forms) {
+/// Finished runs in which another program failed are gone on with (`run_to_go_on_with`).
+std::optional<OpenedRun> find_finished(const Forms& forms, const Topic& topic) {
   for (const Experiment& form : forms) {
-    if (auto folder = find_run(form)) return folder;
+    const auto folder = find_run(form);
+    if (!folder) continue;
+    OpenedRun run(*folder);
+    if (!has_failed_outside(run.record(), topic)) return run;
   }
   return std::nullopt;
+}
+
+/// An interrupted run, or one in which another program failed; absent: a new one is made.
+std::optional<fs::path> run_to_go_on_with(const Experiment& experiment) {
+  auto folder = find_unfinished_run(experiment);
+  return folder ? folder : find_run(experiment);
 }
 
 /// The folder of a run that another program is writing. It may be a run of its own, which needs no
@@ -41,17 +51,17 @@ std::optional<fs::path> find_written(const Forms& forms) {
 
 /// Whose turn it is to make the run.
 struct Turn {
-  std::optional<fs::path> finished;  ///< nobody's: it is there; absent: ours
+  std::optional<OpenedRun> finished;  ///< nobody's: it is there; absent: ours
 };
 
 /// Waits while another program makes the same run; nothing after a stop.
-std::optional<Turn> wait_for_turn(const Forms& forms, MakingLock& lock) {
+std::optional<Turn> wait_for_turn(const Forms& forms, const Topic& topic, MakingLock& lock) {
   constexpr std::chrono::milliseconds kPause{200};
   for (bool told = false; !stop_requested(); told = true) {
     const bool is_ours = lock.try_lock();
     const std::optional<fs::path> written = find_written(forms);
-    const std::optional<fs::path> finished = find_finished(forms);
-    if (finished || (is_ours && !written)) return Turn{finished};
+    std::optional<OpenedRun> finished = find_finished(forms, topic);
+    if (finished || (is_ours && !written)) return Turn{std::move(finished)};
     if (!told) {
       say("waiting for " + (written ? written->string() : "a run of " + forms[0].id) +
           ", which another program is making");
@@ -81,14 +91,15 @@ std::optional<OpenedRun> find_or_make_run(const Experiment& experiment,
                                           const ExecuteRequest& request,
                                           const std::string& announcement) {
   const Forms forms{experiment, without_times(experiment)};
-  if (const auto folder = find_finished(forms)) return OpenedRun(*folder);
+  const Topic& topic = topic_of(experiment, topics);
+  if (auto finished = find_finished(forms, topic)) return finished;
   MakingLock lock(experiment.hash);
-  const std::optional<Turn> turn = wait_for_turn(forms, lock);
+  std::optional<Turn> turn = wait_for_turn(forms, topic, lock);
   if (!turn) return std::nullopt;
-  if (turn->finished) return OpenedRun(*turn->finished);
+  if (turn->finished) return std::move(turn->finished);
   const Experiment& made = forms[request.timing ? 0 : 1];
   ExecuteRequest own = request;
-  own.out = find_unfinished_run(made);
+  own.out = run_to_go_on_with(made);
   own.resume = own.out.has_value();
   say(announcement);
   ExecuteResult result = run_once(made, topics, own, input_maker(topics));

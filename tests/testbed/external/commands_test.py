@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -257,6 +258,27 @@ class Commands(unittest.TestCase):
         frames = self.folder / "run/frames/default"
         for name in ("surface_0000.vtp", "surface_0002.vtp"):
             self.assertEqual((frames / "plain" / name).read_bytes(), (frames / "turned" / name).read_bytes())
+
+    def test_a_check_sees_that_files_came_or_changed(self):
+        frames, runs = self.folder / "theirs", self.folder / "runs"
+
+        def checked():
+            """Variants that the check ran, and what the newest of so many runs says of the files."""
+            ended = subprocess.run([PROGRAM, "check", self.folder / "experiment.toml"], capture_output=True, text=True,
+                                   check=False, env=os.environ | {"GEOPRIOR_RUNS": str(runs)})
+            files = sorted(runs.rglob("run.h5"))
+            with h5py.File(files[-1]) as file:
+                status = file["cases/default/variants/theirs"].attrs["status"]
+            return sorted(re.findall(r"default/([\w-]+):", ended.stderr)), len(files), status
+
+        self.run_variants({"theirs": f'frames = "{frames}"'})  # of another folder: no check sees it
+        self.assertEqual(checked(), (["linear-blend", "theirs"], 1, "failed"))
+        shutil.copytree(self.folder / "run/frames/default/linear-blend", frames)
+        self.assertEqual(checked(), (["theirs"], 1, "done"))
+        self.assertEqual(checked(), ([], 1, "done"))
+        rest, bent = (frames / f"surface_000{i}.vtp" for i in (0, 2))
+        bent.write_bytes(rest.read_bytes())
+        self.assertEqual(checked(), (["linear-blend", "theirs"], 2, "failed"))  # its time is another's
 
     def test_files_are_read_as_they_lie(self):
         self.run_variants({"made": command(PYTHON, "behaviour.py", "good")}, "--allow-commands")
