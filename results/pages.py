@@ -19,10 +19,11 @@ import expressions
 import replicability
 import settings
 from expressions import ExpressionError
+from markdown_text import table
 from prose import without_code
 from runfile import RunFileError
 from records import Record, read_records
-from summary import claim_list, table, timing_table
+from summary import claim_list, timing_table
 from wording import all_told, clock_words, outcome_words
 
 INLINE = re.compile(r"<!--= (?P<source>.*?) -->(?P<shown>.*?)<!-- -->")
@@ -166,13 +167,18 @@ def times_of_place(place, records):
     return times_lines(record, *expressions.cases_of(record, term))
 
 
+def own_claims(record):
+    """Of an experiment of the repository, whose texts are its own: they stand as they are written."""
+    return claim_list(record, str)
+
+
 def block_lines(source, sources):
     """The lines that a block should have. Raises ExpressionError."""
     first, *template = source.splitlines()
     kind, _, argument = first.partition(" ")
     if template and kind != "table":
         raise ExpressionError(f"a block of kind '{kind}' has one line")
-    of_record = {"headline": headline, "claims": claim_list, "figure": caption}
+    of_record = {"headline": headline, "claims": own_claims, "figure": caption}
     if kind == "figure":  # behind the identifier, the files of the run that the pictures are
         argument = argument.partition(" ")[0]
     if kind in of_record:

@@ -7,16 +7,17 @@ import sys
 import traceback
 from pathlib import Path
 
+from geoprior_results import reading
 from geoprior_results.folder import RunError as RunFileError
 from geoprior_results.folder import path_below, require_regular_file
-from geoprior_results.model import Claim, Ratio, Study  # noqa: F401
-from geoprior_results.reading import open_run, text  # noqa: F401
+from geoprior_results.model import WHOLE_PROCESS, Claim, Ratio, Study  # noqa: F401
+from geoprior_results.reading import text  # noqa: F401
 from geoprior_results.texts import printable
 
 
 def read_run(place, force=False, claims_cases=False):
     """As `geoprior_results.open_run`, but without the cases that are there for claims only."""
-    return open_run(place, force, claims_cases)
+    return reading.read_run(place, force, claims_cases, forced_by="--force")
 
 
 def read_artifact(run, name, sha256):

@@ -9,23 +9,18 @@ from pathlib import Path
 import numpy as np
 
 import runfile
+from markdown_text import code, escaped, table
 from tables import failures, metric_rows, timing_rows
 from wording import beside, display_name, interval, outcome_words, with_unit
 
 
-def table(head, rows):
-    """A Markdown table; the first column to the left, numbers to the right."""
-    clean = [[str(c).replace("|", "\\|") for c in row] for row in rows]
-    lines = ["| " + " | ".join(head) + " |", "|---" + "|---:" * (len(head) - 1) + "|"]
-    return lines + ["| " + " | ".join(row) + " |" for row in clean]
-
-
-def claim_list(run):
+def claim_list(run, shown=escaped):
+    """`shown` makes Markdown of the texts of claims: those of a run may be a stranger's."""
     lines = []
     for claim in run.claims:
         case = f" ({claim.case})" if claim.case and len(run.cases) > 1 else ""
-        lines.append(f"- **{claim.outcome}**: {claim.text}{case}  ")
-        lines.append(f"  `{claim.detail}`" + "".join(f"; {words}" for words in beside(claim)))
+        lines.append(f"- **{claim.outcome}**: {shown(claim.text + case)}  ")
+        lines.append(f"  {code(claim.detail)}" + "".join(f"; {shown(words)}" for words in beside(claim)))
     return lines
 
 
@@ -35,10 +30,10 @@ def claims(run):
 
 
 def metrics_table(case):
-    rows = [[row.label(), *row.cells] for row in metric_rows(case)]
+    rows = [[escaped(row.label()), *row.cells] for row in metric_rows(case)]
     if not rows:
         return []
-    return ["", *table(["metric"] + [display_name(v.name) for v in case.variants], rows)]
+    return ["", *table(["metric"] + [escaped(display_name(v.name)) for v in case.variants], rows)]
 
 
 def timing_table(found):
@@ -50,9 +45,9 @@ def timing_table(found):
         t = row.times
         whole = [with_unit(row.whole, "s")] if with_whole else []
         memory = [with_unit(row.memory, "B")] if with_memory else []
-        ratios = [f"{interval(r.median, r.low, r.high)} × {display_name(r.of)}"
+        ratios = [f"{interval(r.median, r.low, r.high)} × {escaped(display_name(r.of))}"
                   + (" (whole runs)" if r.paired == "run" else "") for r in row.ratios]
-        rows.append([row.variant, row.phase, with_unit(t.median, "s"), with_unit(t.p95, "s"),
+        rows.append([escaped(row.variant), escaped(row.phase), with_unit(t.median, "s"), with_unit(t.p95, "s"),
                      f"{with_unit(t.low, 's')} … {with_unit(t.high, 's')}", *whole,
                      with_unit(row.prepare, "s"), *memory, "<br>".join(ratios)])
     if not rows:
@@ -64,21 +59,21 @@ def timing_table(found):
 
 def summary_text(run):
     figure = f" (thesis Figure {run.figure})" if run.figure else ""
-    lines = [f"# {run.title}{figure}", "",
-             f"Experiment `{run.experiment_id}`{', quick version' if run.quick else ''}, "
-             f"{run.provenance.get('start', 'start unknown')}, "
-             f"commit {run.provenance.get('git_commit', 'unknown')}."]
-    lines += [f"\n**{line}**" for line in failures(run)]
+    lines = [f"# {escaped(run.title + figure)}", "",
+             f"Experiment {code(run.experiment_id)}{', quick version' if run.quick else ''}, "
+             f"{escaped(run.provenance.get('start', 'start unknown'))}, "
+             f"commit {escaped(run.provenance.get('git_commit', 'unknown'))}."]
+    lines += [f"\n**{escaped(line)}**" for line in failures(run)]
     lines += claims(run)
     for case in run.cases:
-        heading = f": {case.name}" if len(run.cases) > 1 else ""
+        heading = f": {escaped(case.name)}" if len(run.cases) > 1 else ""
         lines += ["", f"## Metrics{heading}"] + metrics_table(case)
         times = timing_table(timing_rows(case))
         if times:
             lines += ["", f"## Times{heading}"] + times
-        lines += [f"\nWarning: {warning}" for warning in case.warnings]
+        lines += [f"\nWarning: {escaped(warning)}" for warning in case.warnings]
     if run.studies:
-        rows = [[s.name, s.kind, s.quantity, interval(s.value, s.low, s.high)] for s in run.studies]
+        rows = [[*map(escaped, (s.name, s.kind, s.quantity)), interval(s.value, s.low, s.high)] for s in run.studies]
         lines += ["", "## Studies", "",
                   *table(["study", "kind", "quantity", "value [95 % interval]"], rows)]
     lines += ["", "## Files", "", "- `figure.png`, `metrics.svg`, `times.svg` (of processes), `spectrogram.png` (of sounds): what to look at "

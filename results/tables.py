@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runfile import WHOLE_PROCESS
 from wording import display_name, number, scale_for
 
 REDUCTIONS = ("max", "min", "median", "last")
@@ -101,7 +102,7 @@ class Times:
 @dataclass
 class TimingRow:
     variant: str
-    phase: str  # "solve" of a pose method, "frame" of a process, "run" of one timed as a whole
+    phase: str  # "solve" of a pose method, "frame" of a process, WHOLE_PROCESS of another program
     times: Times
     count: int
     whole: float  # a run of all frames; NaN for a pose method
@@ -119,12 +120,12 @@ def times_of(seconds):
 
 
 def is_process(variant):
-    return "run" in variant.timing
+    return "run" in variant.timing or WHOLE_PROCESS in variant.timing
 
 
 def has_frame_times(variant):
     """Whether a process was timed frame by frame (before schema 2: as a whole)."""
-    return is_process(variant) and len(variant.timing["run"]) == len(variant.parameter)
+    return "run" in variant.timing and len(variant.timing["run"]) == len(variant.parameter)
 
 
 def whole_run(variant):
@@ -132,7 +133,7 @@ def whole_run(variant):
     is NaN in no repetition."""
     if not is_process(variant):
         return math.nan
-    parts = [variant.timing[p].sum(axis=0) for p in ("run", "finish") if p in variant.timing]
+    parts = [variant.timing[p].sum(axis=0) for p in ("run", "finish", WHOLE_PROCESS) if p in variant.timing]
     return float(np.median(sum(parts)))
 
 
@@ -140,7 +141,7 @@ def timing_rows(case):
     """One row a variant: its whole cost ("solve" of a pose method, "run" of a process)."""
     rows = []
     for variant in case.variants:
-        phase = next((p for p in ("solve", "run") if p in variant.timing), None)
+        phase = next((p for p in ("solve", "run", WHOLE_PROCESS) if p in variant.timing), None)
         if phase is None:
             continue
         times = variant.timing[phase]
@@ -155,7 +156,7 @@ def timing_rows(case):
 
 def inner_phases(variant):
     """phase: seconds of what a method marked inside its solve or its frames."""
-    whole = ("solve", "run", "load", "prepare", "finish")
+    whole = ("solve", "run", WHOLE_PROCESS, "load", "prepare", "finish")
     return {phase: seconds for phase, seconds in variant.timing.items()
             if phase.split(":")[0] not in whole}
 

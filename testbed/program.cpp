@@ -15,6 +15,7 @@
 #include "testbed/commands/message_line.h"
 #include "testbed/commands/shell/shell_commands.h"
 #include "testbed/commands/start/new_external.h"
+#include "testbed/commands/start/starters.h"
 #include "testbed/runner/process/build_info.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/spec/spec.h"
@@ -239,7 +240,9 @@ void add_new(CommandLine& line) {
   begun->add_option("kind", line.begun.kind, "external: a program of any language")
       ->required()
       ->check(CLI::IsMember({"external"}));
-  begun->add_option("topic", line.begun.topic, "whose scenes and metrics are meant")->required();
+  begun->add_option("topic", line.begun.topic, "whose scenes and metrics are meant")
+      ->required()
+      ->check(CLI::IsMember(topics_of_starters()));
   begun->add_option("--out", line.begun.out, "the folder; absent: my-<topic>-method")
       ->type_name("DIR");
 }

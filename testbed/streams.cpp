@@ -8,17 +8,22 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <utility>
 
 #include "testbed/formats/atomic_file.h"
 
 namespace geoprior {
 namespace {
 
-/// Length of the escape sequence of a colour ("\033[31;1m") that the text begins with, else 0.
+/// The escape sequences of `tinted`; others can hide what they stand before.
+constexpr std::array<std::string_view, 5> kColours{"\033[0m", "\033[1m", "\033[2m", "\033[32m",
+                                                   "\033[31;1m"};
+
+/// Length of the colour that the text begins with, else 0.
 std::size_t colour_length(std::string_view text) {
-  if (!text.starts_with("\033[")) return 0;
-  const std::size_t end = text.find_first_not_of("0123456789;", 2);
-  return end != std::string_view::npos && text[end] == 'm' ? end + 1 : 0;
+  const auto found = std::find_if(kColours.begin(), kColours.end(),
+                                  [&](std::string_view one) { return text.starts_with(one); });
+  return found == kColours.end() ? 0 : found->size();
 }
 
 /// Bytes of the UTF-8 character that the text begins with, 0 where there is none (Unicode 15,
@@ -40,13 +45,43 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
-/// C0 without line end and tab, DEL, and C1 (U+0080 to U+009F).
+/// The code point of a whole UTF-8 character.
+unsigned code_point(std::string_view character) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (character.size() == 1) return byte(0);
+  unsigned code = byte(0) & (0xFFU >> (character.size() + 1));
+  for (std::size_t i = 1; i < character.size(); ++i) code = (code << 6U) | (byte(i) & 0x3FU);
+  return code;
+}
+
+/// What a terminal obeys instead of showing it: control characters (C0 without line end and tab,
+/// DEL, C1), Unicode's Bidi_Control, which let a text look like another, and its own ends of lines
+/// and paragraphs.
 bool is_control(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character[0]);
-  if (character.size() == 2)
-    return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
-  return character.size() == 1 &&
-         (first == 0x7F || (first < 0x20 && first != '\n' && first != '\t'));
+  constexpr std::array<std::pair<unsigned, unsigned>, 7> kControls{{{0x00, 0x08},
+                                                                    {0x0B, 0x1F},
+                                                                    {0x7F, 0x9F},
+                                                                    {0x61C, 0x61C},
+                                                                    {0x200E, 0x200F},
+                                                                    {0x2028, 0x202E},
+                                                                    {0x2066, 0x2069}}};
+  const unsigned code = code_point(character);
+  return std::any_of(kControls.begin(), kControls.end(), [&](const auto& range) {
+    return code >= range.first && code <= range.second;
+  });
+}
+
+std::string made_visible(std::string_view text, bool with_colours) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t colour = with_colours ? colour_length(text) : 0;
+    const std::size_t character = character_length(text);
+    const std::string_view next = text.substr(0, std::max({colour, character, std::size_t{1}}));
+    const bool is_shown = colour > 0 || (character > 0 && !is_control(next));
+    out += is_shown ? std::string(next) : escaped_bytes(next);
+    text.remove_prefix(next.size());
+  }
+  return out;
 }
 
 }  // namespace
@@ -77,18 +112,7 @@ std::size_t printable_length(std::string_view text) {
   return is_shown ? length : 0;
 }
 
-std::string printable(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const std::size_t colour = colour_length(text);
-    const std::size_t character = character_length(text);
-    const std::string_view next = text.substr(0, std::max({colour, character, std::size_t{1}}));
-    const bool is_shown = colour > 0 || (character > 0 && !is_control(next));
-    out += is_shown ? std::string(next) : escaped_bytes(next);
-    text.remove_prefix(next.size());
-  }
-  return out;
-}
+std::string printable(std::string_view text) { return made_visible(text, false); }
 
 std::string from_printable(std::string_view text) {
   std::string bytes;
@@ -104,7 +128,7 @@ std::string from_printable(std::string_view text) {
 }
 
 void say(std::string_view line) {
-  const std::string text = printable(line) + '\n';
+  const std::string text = made_visible(line, true) + '\n';
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

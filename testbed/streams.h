@@ -12,14 +12,14 @@ namespace geoprior {
 /// taken for one of them. Writing to a stdout that was closed stays an error. First of all in main.
 void reserve_standard_streams();
 
-/// Writes a line to stderr, `printable`.
+/// Writes a line to stderr, `printable` but for the colours of `tinted`.
 void say(std::string_view line = {});
 
 /// Writes results to stdout. @throws Error  with the system's reason: disk full, closed pipe …
 void print_out(std::string_view text);
 
-/// The text as UTF-8 that a terminal does not obey: bytes that are no UTF-8 and control characters
-/// become "\xNN". Line ends, tabs and the colours of `tinted` stay.
+/// The text as UTF-8 that a terminal does not obey: bytes that are no UTF-8, control characters and
+/// those that turn the direction of writing become "\xNN". Line ends and tabs stay.
 std::string printable(std::string_view text);
 
 /// Length of the character that the text begins with, where a line may show it: UTF-8, no control

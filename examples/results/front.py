@@ -2,6 +2,7 @@
 
 A variant is dominated when another takes no longer and is no worse, and is better in one of the two. Time is the
 median of a frame; better is what the metric's direction says, for `closer_to_target` the distance from --target.
+A variant that failed is left out: what it has is of the frames before its fault.
 
     python3 examples/results/front.py RUN volume_change.min --target 0 --plot front.svg
 """
@@ -17,7 +18,12 @@ from geoprior_results import RunError, open_run  # noqa: E402
 
 def points_of(run, case, name, target):
     """(variant, seconds, value, how bad that is), the fastest first."""
-    found = [(v.name, v.seconds_a_frame(), v.summary[name]) for v in (case.variants if case else []) if name in v.summary]
+    variants = case.variants if case else []
+    for v in variants:
+        if v.status != "done":
+            print(f"left out: {v.name} is {v.status}", file=sys.stderr)
+    found = [(v.name, v.seconds_a_frame(), v.summary[name]) for v in variants
+             if v.status == "done" and name in v.summary]
     found = [(n, t, m.values, m.direction) for n, t, m in found if math.isfinite(t) and math.isfinite(m.values)]
     if not found:
         raise RunError(f"{run.folder}: no variant of the case has a time and '{name}'")

@@ -21,10 +21,10 @@ LEAST_PAIRS, MOST_EXACT, DRAWS = 3, 16, 20_000
 
 
 def pairs_of(run, metric, variants):
-    """A row a case that differs by its seed alone, and in which both variants have the value."""
+    """A row a case that differs by its seed alone, and in which both variants are done and have the value."""
     cases = [case for case in run.cases + run.claims_cases if set(case.swept) <= {"seed"}]
-    found = [[v.summary[metric].values for v in map(case.variant, variants) if v and metric in v.summary]
-             for case in cases]
+    found = [[v.summary[metric].values for v in map(case.variant, variants)
+              if v and v.status == "done" and metric in v.summary] for case in cases]
     pairs = np.array([pair for pair in found if len(pair) == 2 and np.isfinite(pair).all()])
     if len(pairs) < LEAST_PAIRS:
         raise RunError(f"{run.folder}: {len(pairs)} cases that differ by their seed alone have '{metric}' of "

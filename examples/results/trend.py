@@ -1,6 +1,7 @@
 """How did a number change from commit to commit? A summary value of the first case over the runs of an experiment.
 
-Full runs below --root, or with --quick the quick ones. A + behind a commit: with changes that were not committed.
+Full runs, or with --quick the quick ones, below --root, GEOPRIOR_RUNS or results/runs, whichever is said first. A run
+whose variant failed is left out. A + behind a commit: with changes that were not committed.
 
     python3 examples/results/trend.py skinning/knee volume_change.min implicit --plot trend.svg
 """
@@ -10,7 +11,7 @@ import sys
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "results"))
-from geoprior_results import RunError, open_run, run_folders  # noqa: E402
+from geoprior_results import RunError, open_run, run_folders, runs_root  # noqa: E402
 
 
 def trend(chosen):
@@ -23,11 +24,16 @@ def trend(chosen):
             print(f"left out: {error}", file=sys.stderr)
             continue
         variant, said = run.cases[0].variant(chosen.variant), run.provenance
-        if variant and chosen.metric in variant.summary and run.quick == chosen.quick:
+        if not variant or run.quick != chosen.quick:
+            continue
+        if variant.status != "done":
+            print(f"left out: {folder}: {variant.name} is {variant.status}", file=sys.stderr)
+        elif chosen.metric in variant.summary:
             commit = said.get("git_commit", "unknown")[:12] + "+" * (said.get("git_dirty") == "true")
             rows.append((said.get("start", ""), commit, variant.summary[chosen.metric]))
     if not rows:
-        raise RunError(f"{chosen.root}: no {'quick' if chosen.quick else 'full'} run of '{chosen.experiment}' has it")
+        size = "quick" if chosen.quick else "full"
+        raise RunError(f"{runs_root(chosen.root)}: no {size} run of '{chosen.experiment}' has it")
     return rows
 
 
@@ -43,7 +49,7 @@ def draw(rows, chosen):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("experiment"), parser.add_argument("metric"), parser.add_argument("variant")
-    parser.add_argument("--root", default="results/runs"), parser.add_argument("--plot", metavar="FILE")
+    parser.add_argument("--root"), parser.add_argument("--plot", metavar="FILE")
     parser.add_argument("--quick", action="store_true")
     chosen = parser.parse_args(arguments)
     try:

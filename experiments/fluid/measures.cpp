@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "core/error.h"
 #include "core/mesh.h"
 #include "metrics/contact/self_contact.h"
 #include "metrics/tracks/tracked_objects.h"
@@ -34,13 +36,21 @@ bool is_sloshing(const FluidScene& scene) {
   return volumes.size() == 1 && volumes.front().shape.kind == LiquidShape::Kind::half_space;
 }
 
+/// The values of points that a surface may have, one each; null when it has none of that name.
+/// @throws Error  when there are more of a point
+const Eigen::MatrixXd* values_of(const Part& surface, const char* name) {
+  constexpr auto kPoints = NamedArray::On::points;
+  if (surface.find_array(name, kPoints) == nullptr) return nullptr;
+  return &surface.require_array(name, kPoints, 1, "part 'surface'").values;
+}
+
 /// A flag a vertex: whether a feature moved it; absent for surfaces that none was pasted into.
 std::optional<std::vector<char>> moved_by_features(const Part& surface) {
-  const NamedArray* feature = surface.find_array("feature");
+  const Eigen::MatrixXd* feature = values_of(surface, "feature");
   if (feature == nullptr) return {};
   std::vector<char> moved(surface.points.rows());
   for (std::size_t v = 0; v < moved.size(); ++v) {
-    moved[v] = feature->values(v, 0) != 0 ? 1 : 0;
+    moved[v] = (*feature)(v, 0) != 0 ? 1 : 0;
   }
   return moved;
 }
@@ -204,10 +214,18 @@ std::optional<SeaState> sea_state(const Frame& frame) {
   const Part* samples = frame.find_part("samples");
   const FrameTable* table = frame.find_table("sea");
   if (samples == nullptr || table == nullptr) return {};
-  const NamedArray* height = samples->find_array("height");
-  const NamedArray* rate = samples->find_array("rate");
-  if (height == nullptr || rate == nullptr) return {};
+  const auto values = [&](const char* name) -> const Eigen::MatrixXd& {
+    return samples->require_array(name, NamedArray::On::points, 1, "part 'samples'").values;
+  };
   const Eigen::Index nx = samples->grid_size[0], ny = samples->grid_size[1];
+  if (samples->kind != Part::Kind::grid || samples->grid_size[2] != 1) {
+    throw Error("is no flat grid", "part 'samples'", "points along x and y");
+  }
+  if (table->rows.rows() != 1 || table->rows.cols() != 4) {
+    throw Error("has " + std::to_string(table->rows.rows()) + " rows of " +
+                    std::to_string(table->rows.cols()) + " columns",
+                "table 'sea'", "one row: depth, gravity, wind and variance");
+  }
   const auto row = table->rows.row(0);
   SeaState sea;
   sea.patch = {static_cast<double>(nx) * samples->grid_spacing.x(),
@@ -215,8 +233,8 @@ std::optional<SeaState> sea_state(const Frame& frame) {
   const double wind = row[2] * std::numbers::pi / 180;
   sea.wind = {std::cos(wind), std::sin(wind)};
   sea.expected_variance = row[3];
-  sea.heights = height->values.reshaped(nx, ny);
-  sea.rates = rate->values.reshaped(nx, ny);
+  sea.heights = values("height").reshaped(nx, ny);
+  sea.rates = values("rate").reshaped(nx, ny);
   return sea;
 }
 
@@ -242,6 +260,10 @@ Value sea_dispersion(const FluidScene&, const FrameSequence& frames) {
     modes[0] = std::move(modes[1]);
     modes[1] = std::move(modes[2]);
     modes[2] = fourier_modes(sea->heights);
+    if (i > 0 && (modes[1].rows() != modes[2].rows() || modes[1].cols() != modes[2].cols())) {
+      throw Error("has another number of points than the one of the frame before",
+                  "part 'samples' at " + std::to_string(frames.parameter(i)) + " s");
+    }
     if (i < 2) continue;
     const double interval = (frames.parameter(i) - frames.parameter(i - 2)) / 2;
     const DispersionError error =
@@ -286,10 +308,10 @@ std::optional<TrackingScores> scores_against_truth(const FluidScene& scene,
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const auto surface = frames.part(i, "surface");
     if (!surface) return {};
-    const NamedArray* track = surface->find_array("track");
-    const NamedArray* kind = surface->find_array("kind");
+    const Eigen::MatrixXd* track = values_of(*surface, "track");
+    const Eigen::MatrixXd* kind = values_of(*surface, "kind");
     if (track == nullptr || kind == nullptr) return {};
-    found.push_back(tracked_objects(mesh_of(*surface), track->values.col(0), kind->values.col(0)));
+    found.push_back(tracked_objects(mesh_of(*surface), track->col(0), kind->col(0)));
   }
   if (found.size() != truth.size()) return {};
   TrackingScoreOptions options;

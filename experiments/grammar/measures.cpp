@@ -34,15 +34,6 @@ RecordedState rest_beside(const GrammarScene& scene, const RecordedState& state)
   return {scene.rest, state.numbers()};
 }
 
-/// What the user has asked for by the end of a step.
-AskedPlaces asked_at(const GrammarScene& scene, std::size_t step) {
-  std::vector<Edit> edits;
-  for (std::size_t i = 0; i <= step; ++i)
-    if (scene.steps.at(i).kind == Step::Kind::edit)
-      edits.push_back(scene.edits.at(scene.steps[i].number).wish);
-  return {scene.rest, edits, scene.asked_map(step), scene.gesture_element};
-}
-
 ConstraintMeasures constraints_of(const GrammarScene& scene, const RecordedState& state,
                                   const RecordedState& rest) {
   return {building_violations(state), tree_violations(state, rest), scatter_violations(state),

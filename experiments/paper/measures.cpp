@@ -39,6 +39,14 @@ std::string place(const Frame& frame) {
   return "frame at " + std::to_string(frame.parameter) + " s";
 }
 
+/// The values that a part may have; null when it has no array of that name.
+/// @throws Error  naming the part: the array has another number of components
+const Eigen::MatrixXd* values_of(const Part& part, const char* name, NamedArray::On on,
+                                 int components, const std::string& where) {
+  if (part.find_array(name, on) == nullptr) return nullptr;
+  return &part.require_array(name, on, components, where).values;
+}
+
 /// What `make(pattern, triangles)` gives for the frame's mesh in the pattern, made once a mesh.
 template <class T, std::size_t Remembered, class Make>
 T of_pattern_mesh(Memo<T, Remembered>& memo, const SheetFrame& f, Make make) {
@@ -75,9 +83,10 @@ DetectedCones cones_of(ConeMemo& memo, const SheetFrame& f, Grid grid) {
 
 /// The plastic curvature of every triangle (m x 3, 1/m); 0 where the frame has none.
 Eigen::MatrixX3d rest_curvature(const SheetFrame& f) {
-  const NamedArray* plastic = f.surface.find_array("plastic_curvature", NamedArray::On::cells);
+  const Eigen::MatrixXd* plastic =
+      values_of(f.surface, "plastic_curvature", NamedArray::On::cells, 3, "part 'surface'");
   if (plastic == nullptr) return Eigen::MatrixX3d::Zero(f.triangles().rows(), 3);
-  return plastic->values;
+  return *plastic;
 }
 
 std::shared_ptr<const CurvatureFit> fit_of(FitMemo& fits, const SheetFrame& f) {
@@ -181,9 +190,10 @@ std::optional<EnergyMeasures> energy_measures(FitMemo& fits, const SheetFrame& f
   EnergyMeasures out;
   out.membrane = membrane_energy(f.pattern, f.x(), f.triangles(), plate);
   out.bending = bending_energy(*fit, f.x(), rest_curvature(f), plate);
-  if (const NamedArray* v = f.surface.find_array("velocity", NamedArray::On::points)) {
+  if (const auto* v =
+          values_of(f.surface, "velocity", NamedArray::On::points, 3, "part 'surface'")) {
     const double density = f.sheet.material.area_density;
-    out.kinetic = kinetic_energy(f.pattern, v->values, f.triangles(), density);
+    out.kinetic = kinetic_energy(f.pattern, *v, f.triangles(), density);
   }
   return out;
 }
@@ -245,12 +255,19 @@ std::map<int, Eigen::Vector3d> handle_forces(const SheetFrame& f) {
   std::map<int, Eigen::Vector3d> total;
   const Part* handles = f.frame.find_part("handles");
   if (handles == nullptr) return total;
-  const NamedArray* handle = handles->find_array("handle", NamedArray::On::points);
-  const NamedArray* force = handles->find_array("force", NamedArray::On::points);
+  const std::string where = "part 'handles' of the " + place(f.frame);
+  const auto* handle = values_of(*handles, "handle", NamedArray::On::points, 1, where);
+  const auto* force = values_of(*handles, "force", NamedArray::On::points, 3, where);
   if (handle == nullptr || force == nullptr) return total;
-  for (Eigen::Index i = 0; i < handle->values.rows(); ++i) {
-    const int h = static_cast<int>(std::lround(handle->values(i, 0)));
-    total.try_emplace(h, Eigen::Vector3d::Zero()).first->second += force->values.row(i).transpose();
+  const auto count = static_cast<double>(f.sheet.handles.size());
+  for (Eigen::Index i = 0; i < handle->rows(); ++i) {
+    const double h = (*handle)(i, 0);
+    if (!(h >= 0 && h < count) || h != std::floor(h)) {
+      throw Error("array 'handle' has " + std::to_string(h), where,
+                  "numbers of the scene's handles, from 0 on");
+    }
+    total.try_emplace(static_cast<int>(h), Eigen::Vector3d::Zero()).first->second +=
+        force->row(i).transpose();
   }
   return total;
 }

@@ -30,11 +30,20 @@ std::vector<Event> within(const std::vector<Event>& events, double start, double
   return kept;
 }
 
+/// @throws Error  naming the event that has none of that name
+double number_of(const Event& event, const std::string& name) {
+  const auto found = event.numbers.find(name);
+  if (found != event.numbers.end()) return found->second;
+  throw Error("the " + event.kind + " at " + std::to_string(event.time_s) + " s has no number '" +
+                  name + "'",
+              "events");
+}
+
 /// Of a number of flaps and cracs; absent without any.
 std::optional<double> median_of_snaps(const std::vector<Event>& events, const char* number) {
   std::vector<double> values;
   for (const Event& event : events) {
-    if (event.kind == "flap" || event.kind == "crac") values.push_back(event.numbers.at(number));
+    if (event.kind == "flap" || event.kind == "crac") values.push_back(number_of(event, number));
   }
   if (values.empty()) return {};
   return median(values);
@@ -75,7 +84,7 @@ std::optional<std::vector<PickedVoice>> picked_voices(const FrameSequence& frame
     if (const auto resolved = event.numbers.find("resolved_hz"); resolved != event.numbers.end())
       voice.resolved = resolved->second;
     const Eigen::Index first = std::lround(start->second * voice.rate),
-                       length = std::lround(event.numbers.at("voice_length_s") * voice.rate);
+                       length = std::lround(number_of(event, "voice_length_s") * voice.rate);
     if (first < 0 || length < 0 || first + length > all.samples.rows()) {
       throw Error("ends before the sound of the event at " + std::to_string(event.time_s) + " s",
                   "voices.wav");

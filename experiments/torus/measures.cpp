@@ -6,7 +6,9 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <string>
 
+#include "core/error.h"
 #include "core/mesh.h"
 #include "metrics/contact/self_contact.h"
 #include "metrics/forms/normal_bands.h"
@@ -20,13 +22,24 @@
 namespace geoprior::torus {
 namespace {
 
+/// Of a table of corners. @throws Error  without a row of x, y and step
 double step_of(const Frame& frame, const std::string& windows) {
-  return frame.require_table(windows).rows(0, 2);
+  const Eigen::MatrixXd& rows = frame.require_table(windows).rows;
+  if (rows.rows() > 0 && rows.cols() == 3) return rows(0, 2);
+  throw Error("has " + std::to_string(rows.rows()) + " rows of " + std::to_string(rows.cols()),
+              "table " + windows, "a row of x, y and step for each window");
 }
 
 std::vector<FundamentalForm> fine_forms(const Frame& frame, const std::string& part) {
-  return window_forms(frame.require_part(part).points, kWindowSide, step_of(frame, "windows"),
-                      DifferenceOrder::fourth);
+  const double step = step_of(frame, "windows");
+  const Eigen::MatrixX3d& points = frame.require_part(part).points;
+  const Eigen::Index wanted =
+      kWindowSide * kWindowSide * frame.require_table("windows").rows.rows();
+  if (points.rows() != wanted) {
+    throw Error("has " + std::to_string(points.rows()) + " points", "part " + part,
+                std::to_string(wanted) + ", as the table windows has rows");
+  }
+  return window_forms(points, kWindowSide, step, DifferenceOrder::fourth);
 }
 
 constexpr FundamentalForm kSquare{1, 0, 1};
@@ -52,11 +65,21 @@ double mean_default(const std::vector<FundamentalForm>& forms) {
   return sum / static_cast<double>(forms.size());
 }
 
+/// Corrugations so far, as the frame's table has them; 0 without one.
+int corrugation_count(const TorusScene& scene, const Frame& frame) {
+  const FrameTable* table = frame.find_table("corrugations");
+  if (table == nullptr) return 0;
+  const Eigen::Index rows = table->rows.rows(), all = std::ssize(scene.input.corrugations);
+  if (rows >= 1 && rows <= all) return static_cast<int>(rows);
+  throw Error("has " + std::to_string(rows) + " rows", "table corrugations",
+              "one for each corrugation so far, 1 to " + std::to_string(all));
+}
+
 /// The last corrugation of a frame, null when there is none.
 const Corrugation* last_corrugation(const TorusScene& scene, const Frame& frame) {
-  const FrameTable* table = frame.find_table("corrugations");
-  if (table == nullptr || scene.input.sampling.zooms) return nullptr;
-  return &scene.input.corrugations.at(table->rows.rows() - 1);
+  const int count = corrugation_count(scene, frame);
+  if (count == 0 || scene.input.sampling.zooms) return nullptr;
+  return &scene.input.corrugations[count - 1];
 }
 
 /// Largest distance of two points of a row, over a length of each inner point of windows.
@@ -88,10 +111,10 @@ Value intersections_of(const TorusScene& scene, const Frame& frame, const std::s
   const Part* part = frame.find_part(name);
   if (part == nullptr) return std::nullopt;
   const Eigen::MatrixXd& at = part->require_array("parameters", NamedArray::On::points, 2).values;
-  const FrameTable* table = frame.find_table("corrugations");
-  const int count = table == nullptr ? 0 : static_cast<int>(table->rows.rows());
+  if (at.rows() < 2) return std::nullopt;
   const double step = at(1, 0) - at(0, 0);
-  if (!(kLeastSamples * step * finest_periods(scene.input, count) <= 1)) return std::nullopt;
+  const double finest = finest_periods(scene.input, corrugation_count(scene, frame));
+  if (!(kLeastSamples * step * finest <= 1)) return std::nullopt;
   return intersecting_pairs(part->points, part->triangles);
 }
 
@@ -131,20 +154,24 @@ std::optional<DefaultMeasures> default_measures(const TorusScene& scene, const F
   }
   const double windows = static_cast<double>(forms.size() / inside);
   out.deviation = std::sqrt(squares) / windows;
-  if (const Corrugation* last = last_corrugation(scene, frame)) {
-    const auto count = static_cast<int>(frame.require_table("corrugations").rows.rows());
+  const Corrugation* last = last_corrugation(scene, frame);
+  // At the beginning nothing is wanted yet; later a frame has to say what it has come to.
+  if (last == nullptr && frame.parameter > 0) return out;
+  double wanted = 0, miss = 0;
+  if (last != nullptr) {
+    const int count = corrugation_count(scene, frame);
     std::size_t at = 0;
     for (const FundamentalForm& base : fine_forms(frame, "windows_base")) {
       const FundamentalForm missing = aim(base, last->share) - base;
       FundamentalForm ideal = base;
       for (int i = stage_base(scene.input, count - 1); i < count; ++i)
         ideal = with_part(ideal, missing, scene.input.corrugations[i].direction);
-      out.wanted += (kSquare - ideal).norm();
-      out.miss += (ideal - forms[at++]).norm();
+      wanted += (kSquare - ideal).norm();
+      miss += (ideal - forms[at++]).norm();
     }
-    out.wanted /= static_cast<double>(forms.size());
-    out.miss /= static_cast<double>(forms.size());
   }
+  out.wanted = wanted / static_cast<double>(forms.size());
+  out.miss = miss / static_cast<double>(forms.size());
   return out;
 }
 
@@ -192,13 +219,14 @@ std::optional<CorrugationMeasures> corrugation_measures(const TorusScene& scene,
 Value miss_ratio(const TorusScene& scene, const FrameSequence& frames) {
   const int count = static_cast<int>(scene.input.corrugations.size());
   if (scene.input.sampling.zooms || count == 0) return std::nullopt;
+  if (frames.size() != scene.input.corrugations.size() + 1) return std::nullopt;
   double errors = 0;
   for (int i = stage_base(scene.input, count - 1); i < count; ++i)
     if (const auto measured = corrugation_measures(scene, *frames.frame(i + 1)))
       errors += measured->error;
   const auto measured = default_measures(scene, *frames.frame(count));
-  if (!measured || !(errors > 0)) return std::nullopt;
-  return measured->miss / errors;
+  if (!measured || !measured->miss || !(errors > 0)) return std::nullopt;
+  return *measured->miss / errors;
 }
 
 LengthMeasures length_measures(const TorusScene& /*scene*/, const Frame& frame) {

@@ -17,8 +17,9 @@ struct DefaultMeasures {
   double deviation = 0;  ///< of the mean over the windows: standard error
   /// Mean of |Id - h|, h what the corrugations of the stage would have made of its base if each had
   /// added exactly its part of g - base; once all three directions had theirs, h = g.
-  double wanted = 0;
-  double miss = 0;  ///< mean of |h - f* < , >|, at least |mean - wanted|
+  /// Absent where a later frame does not say how many corrugations it has come to.
+  Value wanted;
+  Value miss;  ///< mean of |h - f* < , >|, at least |mean - wanted|; absent likewise
 };
 std::optional<DefaultMeasures> default_measures(const TorusScene& scene, const Frame& frame);
 

@@ -27,7 +27,11 @@ MetricGroup default_group() {
       .row("default_excess", "1",
            "the mean default less the mean |Id - h|, h the metric that the stage's corrugations "
            "would have made if each had added exactly its part (g_k once all three have)",
-           kNone, kSmooth, [](const M& m) { return m.mean - m.wanted; })
+           kNone, kSmooth,
+           [](const M& m) -> Value {
+             if (!m.wanted) return std::nullopt;
+             return m.mean - *m.wanted;
+           })
       .row("default_miss", "1",
            "mean |h - f* < , >|: how far the metric is from that one; the excess is no larger",
            kLow, kSmooth, &M::miss);

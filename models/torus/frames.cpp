@@ -7,6 +7,7 @@
 #include "core/frame_loop.h"
 #include "core/geometry/area_vector.h"
 #include "core/mesh.h"
+#include "models/torus/revolution.h"
 #include "models/torus/sampling.h"
 
 namespace geoprior::torus {
@@ -68,6 +69,39 @@ FrameTable corrugation_table(const TorusInput& input, int count) {
   return table;
 }
 
+void add_tables(const TorusInput& input, const FramePlan& plan, Frame& frame) {
+  for (const WindowSet& windows : plan.windows) frame.tables[windows.name] = corner_table(windows);
+  if (plan.corrugations > 0)
+    frame.tables["corrugations"] = corrugation_table(input, plan.corrugations);
+}
+
+/// What the points asked for are in a frame.
+Part part_of(const FramePart& asked, Eigen::MatrixX3d points) {
+  Part out;
+  out.points = std::move(points);
+  if (const auto& lattice = asked.lattice) {
+    out.triangles = lattice_triangles(lattice->side, lattice->closed);
+    if (lattice->magnification)
+      set_upright(out.points, out.triangles, lattice->side, *lattice->magnification);
+    out.arrays.push_back(parameters_array(asked.samples.at));
+  } else if (asked.name == "grid") {
+    const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(out.points.rows()))));
+    out.kind = Part::Kind::grid;
+    out.grid_size = {n, n, 1};
+    out.grid_spacing = {1. / n, 1. / n, 1};
+    out.arrays.push_back({"position", "m", NamedArray::On::points, out.points});
+    out.points.resize(0, 3);
+  } else if (asked.name.starts_with("windows")) {
+    out.kind = Part::Kind::points;
+  } else {
+    out.kind = Part::Kind::lines;
+    std::vector<int>& line = out.lines.emplace_back(out.points.rows());
+    std::iota(line.begin(), line.end(), 0);
+    line.push_back(0);
+  }
+  return out;
+}
+
 class TorusFrames final : public FrameModel {
  public:
   TorusFrames(const TorusInput& input, std::unique_ptr<TorusMap> map)
@@ -93,10 +127,7 @@ class TorusFrames final : public FrameModel {
       frame.parts[plan.parts[i].name] = part(plan.parts[i], first + i, context);
     if (context.stop_requested()) return;
     const Phase phase(context, "record");
-    for (const WindowSet& windows : plan.windows)
-      frame.tables[windows.name] = corner_table(windows);
-    if (plan.corrugations > 0)
-      frame.tables["corrugations"] = corrugation_table(input_, plan.corrugations);
+    add_tables(input_, plan, frame);
     for (const FramePart& one : plan.parts)
       if (one.name == "windows") map_->diagnose(one.samples, frame.diagnostics);
     sink.frame(std::move(frame));
@@ -104,33 +135,12 @@ class TorusFrames final : public FrameModel {
 
  private:
   Part part(const FramePart& asked, std::size_t index, RunContext& context) const {
-    Part out;
+    Eigen::MatrixX3d points;
     {
       const Phase phase(context, "map");
-      out.points = map_->points(index, asked.samples, context);
+      points = map_->points(index, asked.samples, context);
     }
-    if (const auto& lattice = asked.lattice) {
-      out.triangles = lattice_triangles(lattice->side, lattice->closed);
-      if (lattice->magnification)
-        set_upright(out.points, out.triangles, lattice->side, *lattice->magnification);
-      out.arrays.push_back(parameters_array(asked.samples.at));
-    } else if (asked.name == "grid") {
-      const int n =
-          static_cast<int>(std::lround(std::sqrt(static_cast<double>(out.points.rows()))));
-      out.kind = Part::Kind::grid;
-      out.grid_size = {n, n, 1};
-      out.grid_spacing = {1. / n, 1. / n, 1};
-      out.arrays.push_back({"position", "m", NamedArray::On::points, out.points});
-      out.points.resize(0, 3);
-    } else if (asked.name.starts_with("windows")) {
-      out.kind = Part::Kind::points;
-    } else {
-      out.kind = Part::Kind::lines;
-      std::vector<int>& line = out.lines.emplace_back(out.points.rows());
-      std::iota(line.begin(), line.end(), 0);
-      line.push_back(0);
-    }
-    return out;
+    return part_of(asked, std::move(points));
   }
 
   const TorusInput& input_;
@@ -146,6 +156,22 @@ std::unique_ptr<Process> make_torus_process(const TorusInput& input, TorusMapFac
     const Phase phase(context, "prepare");
     return std::make_unique<TorusFrames>(input, factory(input, context));
   });
+}
+
+Frame asked_frame(const TorusInput& input, int number) {
+  const FramePlan plan = plan_frames(input, std::nullopt).at(number);
+  Frame frame;
+  frame.parameter = plan.parameter;
+  for (const FramePart& asked : plan.parts) {
+    Eigen::MatrixX3d points(asked.samples.at.rows(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      points.row(i) = revolution_point(input.radii, asked.samples.at.row(i));
+    Part& part = frame.parts[asked.name] = part_of(asked, std::move(points));
+    if (part.kind != Part::Kind::grid && !asked.lattice)
+      part.arrays.push_back(parameters_array(asked.samples.at));
+  }
+  add_tables(input, plan, frame);
+  return frame;
 }
 
 }  // namespace geoprior::torus

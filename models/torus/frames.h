@@ -29,4 +29,8 @@ namespace geoprior::torus {
 /// Phases: "prepare", "map" (the method alone), "record".
 std::unique_ptr<Process> make_torus_process(const TorusInput& input, TorusMapFactory factory);
 
+/// Frame `number` of the torus of revolution, as a method that knows any point makes it, all of its
+/// parts but "grid" with the point array "parameters" (2): what metrics ask for.
+Frame asked_frame(const TorusInput& input, int number);
+
 }  // namespace geoprior::torus

@@ -10,9 +10,9 @@ A run that is missing, cut off or changed raises RunError, which names the file.
 geoprior. What the numbers mean: docs/file-formats.md.
 """
 
-from .folder import RunError, run_folders
+from .folder import RunError, run_folders, runs_root
 from .model import Case, Claim, Diagnostic, Metric, Ratio, Run, Study, Table, Variant
 from .reading import newest_run, open_run, open_runs
 
 __all__ = ["Case", "Claim", "Diagnostic", "Metric", "Ratio", "Run", "RunError", "Study", "Table", "Variant",
-           "newest_run", "open_run", "open_runs", "run_folders"]
+           "newest_run", "open_run", "open_runs", "run_folders", "runs_root"]

@@ -40,18 +40,19 @@ def recorded_result(folder: Path) -> str | None:
         return None
 
 
-def require_recorded(path: Path) -> None:
-    """HDF5 crashes on many a damaged file: nothing is read but what the run wrote."""
+def require_recorded(path: Path, forced_by: str) -> None:
+    """HDF5 crashes on many a damaged file: nothing is read but what the run wrote. `forced_by` is what reads it all the
+    same, as who asked for it would say it."""
     if path.is_symlink():
         raise RunError(f"{path}: is a symbolic link: below a run none is followed")
     recorded = recorded_result(path.parent)
     if recorded is None:
         raise RunError(f"{path}: its checksum is not in the journal beside it (allowed: the "
-                       "folder of a finished run as it was written, or --force)")
+                       f"folder of a finished run as it was written, or {forced_by})")
     with open(path, "rb") as file:
         if hashlib.file_digest(file, "sha256").hexdigest() != recorded:
             raise RunError(f"{path}: is damaged or another file: its SHA-256 is not the "
-                           "recorded one (allowed: the file as the run wrote it, or --force)")
+                           f"recorded one (allowed: the file as the run wrote it, or {forced_by})")
 
 
 def path_below(folder: Path, name: str) -> Path:
@@ -66,15 +67,18 @@ def path_below(folder: Path, name: str) -> Path:
     return path
 
 
-def run_folders(experiment_id: str, root: Place | None = None) -> list[Path]:
-    """Folders of the finished runs of an experiment below `root`, oldest first; quick runs are among them.
+def runs_root(root: Place | None = None) -> Path:
+    """The folder that holds `<topic>/<name>/`: `root`, or GEOPRIOR_RUNS where it is set, else results/runs of the
+    working folder, which is that of a clone."""
+    return Path(root or os.environ.get("GEOPRIOR_RUNS") or "results/runs")
 
-    `root` is the folder that holds `<topic>/<name>/`: GEOPRIOR_RUNS where it is set, else results/runs of the working
-    folder, which is that of a clone.
-    """
+
+def run_folders(experiment_id: str, root: Place | None = None) -> list[Path]:
+    """Folders of the finished runs of an experiment below `runs_root(root)`, oldest first; quick runs are among
+    them."""
     if not EXPERIMENT.fullmatch(experiment_id):
         raise RunError(f"{experiment_id!r}: is no identifier of an experiment (allowed: two names, topic/name)")
-    folder = Path(root or os.environ.get("GEOPRIOR_RUNS") or "results/runs") / experiment_id
+    folder = runs_root(root) / experiment_id
     if not folder.is_dir():
         return []
     return sorted(run for run in folder.iterdir() if RUN_NAME.fullmatch(run.name) and (run / "run.h5").is_file())

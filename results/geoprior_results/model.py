@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import pandas
 
 SCHEMA_VERSION = 4  # and what came before it
+WHOLE_PROCESS = "process"  # the phase of a program from outside: one time, of all frames
 SOFT_BELOW = 0.7  # as kSoftBelow of testbed/runner/journal/run_record.h
 
 Floats = NDArray[np.float64]
@@ -80,7 +81,10 @@ class Variant:
         return [name for _, name, _ in self.frames]
 
     def seconds_a_frame(self) -> float:
-        """Median over frames and repetitions: of a solve, or of a process' frame. NaN where it was not timed."""
+        """Median over frames and repetitions: of a solve, or of a process' frame; of a program from outside, which
+        has one time, its share of a frame. NaN where it was not timed."""
+        if WHOLE_PROCESS in self.timing:
+            return float(np.nanmedian(self.timing[WHOLE_PROCESS])) / max(len(self.parameter), 1)
         seconds = next((self.timing[phase] for phase in ("solve", "run") if phase in self.timing), np.empty(0))
         return float(np.nanmedian(seconds)) if np.isfinite(seconds).any() else math.nan
 

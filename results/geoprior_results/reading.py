@@ -10,36 +10,40 @@ from urllib.parse import unquote
 import h5py
 import numpy as np
 
-from .folder import Place, RunError, require_recorded, run_folders
+from .folder import Place, RunError, require_recorded, run_folders, runs_root
 from .model import (SCHEMA_VERSION, Case, Claim, Diagnostic, Floats, Metric, Ratio, Run, Study, Table, Values,
                     Variant)
-from .texts import printable
+from .texts import decoded, printable
 
 ROOT_TEXTS = ("experiment_id", "title", "figure", "topic", "experiment", "spec_hash",
               "content_sha256")
 LATER_ROOT_TEXTS = ("frames_sha256", "metrics_sha256")
 
 
+def words(value: Any) -> str:
+    """A text for a reader of its own: TOML, JSON."""
+    return decoded(value.decode("utf-8", "surrogateescape") if isinstance(value, bytes) else str(value))
+
+
 def text(value: Any) -> str:
-    return printable(value.decode("utf-8", "surrogateescape") if isinstance(value, bytes)
-                     else str(value))
+    return printable(words(value))
 
 
 def read_json(value: Any) -> Any:
-    value = text(value)
     try:
-        return json.loads(value) if value else {}
+        return json.loads(words(value)) if value else {}
     except json.JSONDecodeError:
-        return {"text": value}
+        return {"text": text(value)}
 
 
-def decoded(name: str) -> str:
-    return printable(unquote(name))
+def name_of(member: str) -> str:
+    """The name that a member of the file, or an attribute, stands for."""
+    return printable(unquote(member))
 
 
 def by_index(group: Any) -> list[tuple[str, Any]]:
-    """Members of a group in the order of their `index` attribute, with their decoded names."""
-    members = [(decoded(name), group[name]) for name in group]
+    """Members of a group in the order of their `index` attribute, with the names they stand for."""
+    members = [(name_of(name), group[name]) for name in group]
     return sorted(members, key=lambda m: (int(m[1].attrs.get("index", 0)), m[0]))
 
 
@@ -54,7 +58,7 @@ def read_diagnostic(data: Any) -> Diagnostic:
 
 
 def read_tables(group: Mapping[str, Any]) -> dict[str, Table]:
-    return {decoded(name): Table([text(column) for column in np.atleast_1d(data.attrs["columns"])], data[()])
+    return {name_of(name): Table([text(column) for column in np.atleast_1d(data.attrs["columns"])], data[()])
             for name, data in group.items()}
 
 
@@ -64,10 +68,10 @@ def read_variant(name: str, group: Any, parameter_name: str) -> Variant:
         name=name, method=text(attrs["method"]), role=text(attrs["role"]),
         reference=text(attrs.get("reference", "")), options=read_json(attrs["options"]),
         status=text(attrs["status"]), error=text(attrs.get("error", "")), parameter=group["parameter"][()],
-        metrics={decoded(n): read_metric(d, np.asarray(d[()])) for n, d in group["metrics"].items()},
-        summary={decoded(n): read_metric(d, float(d[()])) for n, d in group["summary"].items()},
-        diagnostics={decoded(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
-        timing={decoded(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
+        metrics={name_of(n): read_metric(d, np.asarray(d[()])) for n, d in group["metrics"].items()},
+        summary={name_of(n): read_metric(d, float(d[()])) for n, d in group["summary"].items()},
+        diagnostics={name_of(n): read_diagnostic(d) for n, d in group["diagnostics"].items()},
+        timing={name_of(n): np.atleast_2d(group["timing"][n][()]) for n in group["timing"]},
         memory=float(attrs.get("memory_peak", np.nan)) - float(attrs.get("memory_start", np.nan)),
         events=group["events"][()],
         frames=[(int(f["frame"]), text(f["name"]), text(f["sha256"])) for f in group["frames"][()]],
@@ -84,8 +88,8 @@ def read_case(name: str, group: Any) -> Case:
         parameter_unit=text(attrs["parameter_unit"]), seed=int(attrs["seed"]),
         threads=int(attrs["threads"]), scene=read_json(attrs["scene"]),
         warnings=[text(w) for w in np.atleast_1d(attrs["warnings"])],
-        swept={decoded(k): read_json(v) for k, v in group["swept"].attrs.items()},
-        facts={decoded(k): float(v) for k, v in group["facts"].attrs.items()},
+        swept={name_of(k): read_json(v) for k, v in group["swept"].attrs.items()},
+        facts={name_of(k): float(v) for k, v in group["facts"].attrs.items()},
         variants=[v for v in variants if v.role != "null"],
         nulls=[v for v in variants if v.role == "null"],
         ratios=[Ratio(text(r["variant"]), text(r["of"]), float(r["median_ratio"]),
@@ -117,7 +121,7 @@ def read_root(folder: Path, file: Any, claims_cases: bool) -> Run:
     run = Run(
         folder=folder, quick=bool(attrs["quick"]),
         **texts,
-        provenance={decoded(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
+        provenance={name_of(k): text(v) for k, v in sorted(attrs.items()) if k not in known},
         inputs=[(text(i["name"]), text(i["sha256"])) for i in file["inputs"][()]],
         cases=[read_case(n, g) for n, g in by_index(file["cases"])
                if not g.attrs.get("claims_only", 0)],
@@ -126,7 +130,7 @@ def read_root(folder: Path, file: Any, claims_cases: bool) -> Run:
         studies=[read_study(n, g) for n, g in by_index(file["study"])],
         claims=[read_claim(c) for c in file["claims"][()]], schema_version=int(attrs["schema_version"]))
     try:
-        run.view = tomllib.loads(run.experiment).get("figure_view", {})
+        run.view = tomllib.loads(words(attrs["experiment"])).get("figure_view", {})
     except tomllib.TOMLDecodeError:
         run.view = {}
     return run
@@ -148,13 +152,18 @@ def open_run(place: Place, force: bool = False, claims_cases: bool = True) -> Ru
     """Reads a run folder (or its run.h5), whole: no file stays open. With `force` whether or not it is what was
     recorded; without `claims_cases` only the cases that are shown, not those that are there for claims.
     Raises RunError with one clear line."""
+    return read_run(place, force, claims_cases, forced_by="force=True")
+
+
+def read_run(place: Place, force: bool, claims_cases: bool, forced_by: str) -> Run:
+    """As `open_run`, for callers that have another word for `force`."""
     path = Path(place)
     path = path / "run.h5" if path.is_dir() else path
     if not path.is_file():
         raise RunError(f"{path}: no such file (a finished run has a run.h5; an interrupted one "
-                       "goes on with --resume)")
+                       "goes on with geoprior run --resume)")
     if not force:
-        require_recorded(path)
+        require_recorded(path, forced_by)
     try:
         with h5py.File(path, "r") as file:
             require_own(file)
@@ -183,6 +192,6 @@ def newest_run(experiment_id: str, root: Place | None = None) -> Run:
     `run_folders`. Raises RunError where there is none."""
     folders = run_folders(experiment_id, root)
     if not folders:
-        raise RunError(f"{Path(root) if root else 'results/runs, or GEOPRIOR_RUNS'}: has no finished run of "
-                       f"'{experiment_id}' (geoprior run {experiment_id} makes one)")
+        raise RunError(f"{runs_root(root)}: has no finished run of '{experiment_id}' (geoprior run {experiment_id} "
+                       "makes one)")
     return open_run(folders[-1])

@@ -1,11 +1,18 @@
 """Texts of files as a page or a terminal can show them."""
 
-import unicodedata
+import re
+
+# Control characters but line end and tab, Unicode's Bidi_Control, which let a text look like another, and its own
+# ends of lines and paragraphs.
+NOT_SHOWN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+
+
+def decoded(text: str) -> str:
+    """The text with bytes that were no UTF-8 as `\\xNN`."""
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
 def printable(text: str) -> str:
-    """The text without what neither a page nor a terminal can show: bytes that were no UTF-8 and
-    control characters but line ends and tabs become `\\xNN`."""
-    text = text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-    return "".join(f"\\x{ord(c):02x}" if unicodedata.category(c) == "Cc" and c not in "\n\t" else c
-                   for c in text)
+    """The text with `\\xNN` for each byte of what neither a page nor a terminal should show as it is: what is no UTF-8,
+    or in NOT_SHOWN. As `printable` of testbed/streams.h."""
+    return NOT_SHOWN.sub(lambda found: "".join(f"\\x{byte:02x}" for byte in found[0].encode()), decoded(text))

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "testbed/catalogue.h"
 #include "testbed/commands/blessed_run.h"
 #include "testbed/commands/commands.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/outcome.h"
-#include "testbed/home.h"
 #include "testbed/joined.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/judgement/claims.h"
@@ -40,16 +38,11 @@ void require_reason(const BlessRequest& request) {
               "--reason \"why the new values are right\"");
 }
 
-/// A reference belongs to the experiment of the clone that has this identifier; a file elsewhere
-/// may call itself what it likes.
 void require_file_of_clone(const Experiment& experiment) {
-  namespace fs = std::filesystem;
-  const fs::path own = catalogued_file(experiment.id)
-                           .value_or(geoprior_home() / "experiments" / (experiment.id + ".toml"));
-  if (fs::weakly_canonical(experiment.file) == fs::weakly_canonical(own)) return;
+  if (is_file_of_clone(experiment)) return;
   throw Error("is not the file of the experiment '" + experiment.id +
                   "': it has no reference values to bless",
-              experiment.file.string(), own.string());
+              experiment.file.string(), file_of_clone(experiment).string());
 }
 
 Blessing blessing_of(const std::string& reason) {

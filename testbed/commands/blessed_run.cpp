@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "testbed/catalogue.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/find.h"
+#include "testbed/home.h"
 #include "testbed/runner/inputs/made_run.h"
 #include "testbed/runner/spec/spec.h"
 #include "testbed/streams.h"
@@ -21,6 +23,16 @@ Experiment load_without_clock(const CommandContext& context, const std::string& 
   Experiment experiment = load_experiment(experiment_file(id_or_file), context.topics, load);
   leave_out_times(experiment);
   return experiment;
+}
+
+std::filesystem::path file_of_clone(const Experiment& experiment) {
+  return catalogued_file(experiment.id)
+      .value_or(geoprior_home() / "experiments" / (experiment.id + ".toml"));
+}
+
+bool is_file_of_clone(const Experiment& experiment) {
+  return std::filesystem::weakly_canonical(experiment.file) ==
+         std::filesystem::weakly_canonical(file_of_clone(experiment));
 }
 
 std::string size_of(const Experiment& experiment) { return experiment.quick ? "quick" : "full"; }

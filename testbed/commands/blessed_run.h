@@ -21,6 +21,13 @@ struct BlessedRun {
 Experiment load_without_clock(const CommandContext& context, const std::string& id_or_file,
                               bool quick);
 
+/// The file of the clone that has the experiment's identifier, or would have it.
+std::filesystem::path file_of_clone(const Experiment& experiment);
+
+/// Whether it is that file: only then are its reference values blessed. A file elsewhere may call
+/// itself what it likes.
+bool is_file_of_clone(const Experiment& experiment);
+
 /// "full" or "quick": the set of reference values that the experiment's runs belong to.
 std::string size_of(const Experiment& experiment);
 

@@ -42,6 +42,7 @@ struct Verdict {
   std::vector<std::string> failures;  ///< of variants that an error ended, and of outcomes
   std::map<std::string, std::string> known_shortfalls;  ///< text of a claim, why it falls short
   bool has_reference = true;
+  bool is_of_clone = true;     ///< where it has no reference: else none can be blessed
   bool mutations = false;      ///< asked for: a method replaced by its null must be noticed
   bool mutation_seen = false;  ///< by at least one claim
   bool names_nulls = false;    ///< a claim of this size that is not known to fall short does
@@ -172,7 +173,10 @@ Verdict check_one(const CommandContext& context, const std::string& id,
   }
   const auto blessed = reference.find(size_of(run.experiment));
   verdict.has_reference = blessed != reference.end();
-  if (!verdict.has_reference) return verdict;
+  if (!verdict.has_reference) {
+    verdict.is_of_clone = is_file_of_clone(run.experiment);
+    return verdict;
+  }
   GatedValues now = gated_values(run.experiment, *run.topic, run.record, verdict.claims);
   ReferenceSet before = blessed->second.values;
   verdict.compared = count_values(now);
@@ -196,9 +200,13 @@ void say_verdict(const Verdict& verdict, bool quick) {
       (verdict.same_bytes ? " (same bytes), " : ", ") + std::to_string(verdict.claims.size()) +
       " claims");
   for (const std::string& notice : verdict.notices) say("        notice: " + notice);
-  if (!verdict.has_reference) {
+  if (!verdict.has_reference && verdict.is_of_clone) {
     say("        no reference values; make them with: geoprior bless " + verdict.id +
         (quick ? " --quick" : "") + " --reason \"…\"");
+  } else if (!verdict.has_reference) {
+    say("        no reference values: only experiments of the clone get some; what changed since "
+        "another run: geoprior compare <run> " +
+        verdict.run);
   }
   for (const std::string& failure : verdict.failures) say("        " + failure);
   for (const Mismatch& mismatch : verdict.mismatches) {

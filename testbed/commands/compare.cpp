@@ -168,6 +168,7 @@ Json comparison_json(const RunComparison& comparison, const OpenedRun& before,
           {"after", run_json(after)},
           {"differing_keys", keys_json(comparison.keys)},
           {"differing_options", keys_json(comparison.options)},
+          {"differing_inputs", keys_json(comparison.inputs)},
           {"values", values_json(comparison)},
           {"within_tolerance", comparison.within},
           {"added_metrics", comparison.added},
@@ -184,11 +185,29 @@ Json comparison_json(const RunComparison& comparison, const OpenedRun& before,
 }
 
 /// Both are made before either is written.
-void write_pages(const ComparisonDocument& document, const fs::path& out) {
+void write_pages(const ComparisonDocument& document, const fs::path& out, bool is_asked_for) {
   const std::string html = html_of(document), markdown = markdown_of(document);
-  const MadeFolders made(out);
-  write_file_atomically(out / "compare.html", std::string_view(html));
-  write_file_atomically(out / "compare.md", std::string_view(markdown));
+  throw_if_stopped();
+  try {
+    const MadeFolders made(out);
+    write_file_atomically(out / "compare.html", std::string_view(html));
+    write_file_atomically(out / "compare.md", std::string_view(markdown));
+  } catch (const Error& error) {
+    if (is_asked_for) throw;
+    throw Error(error.what(), "", "pages in another folder, with --out DIR");
+  }
+}
+
+/// One thing compared with itself says nothing.
+void require_two_things(const fs::path& first, const fs::path& second,
+                        const ComparisonRequest& request) {
+  if (!fs::equivalent(first, second)) return;
+  const std::string allowed = "two runs, or --variants A=B to compare two variants of one";
+  if (request.variants.empty()) throw Error("is the same run twice", first.string(), allowed);
+  for (const auto& [a, b] : request.variants) {
+    if (a == b)
+      throw Error("is one variant of one run, twice", "--variants " + a + "=" + b, allowed);
+  }
 }
 
 }  // namespace
@@ -197,10 +216,7 @@ int compare_command(const CommandContext& context, const CompareRequest& request
   install_stop_handler();
   const fs::path first = run_folder_of(request.before), second = run_folder_of(request.after);
   const ComparisonRequest wanted{request.common, variant_pairs(request.variants)};
-  if (fs::equivalent(first, second) && wanted.variants.empty()) {
-    throw Error("is the same run twice", first.string(),
-                "two runs, or --variants A=B to compare two variants of one");
-  }
+  require_two_things(first, second, wanted);
   const OpenedRun before(first, request.unverified), after(second, request.unverified);
   const Topic& topic = topic_of_record(after.record(), context.topics, second);
   const RunComparison comparison = compare_runs(before, after, topic, wanted);
@@ -209,9 +225,8 @@ int compare_command(const CommandContext& context, const CompareRequest& request
       request.out
           ? fs::path(*request.out)
           : path_below(second, "compare-" + before.record().content_sha256.substr(0, kHashDigits));
-  throw_if_stopped();
-  write_pages(document, out);
-  say_document(document);
+  say_document(document);  // first: it stands also where no page can be written
+  write_pages(document, out, request.out.has_value());
   say("page     " + (out / "compare.html").string());
   say("text     " + (out / "compare.md").string());
   if (context.json) print_json(comparison_json(comparison, before, after, out));

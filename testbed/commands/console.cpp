@@ -49,7 +49,11 @@ void say_table(const std::vector<std::vector<std::string>>& rows, const std::str
 }
 
 void print_json(const nlohmann::ordered_json& json) {
-  print_out(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+  const auto text = [&](bool in_ascii) {
+    return json.dump(2, ' ', in_ascii, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  };
+  const std::string plain = text(false);
+  print_out(printable(plain) == plain ? plain : text(true));  // the same that no terminal obeys
 }
 
 nlohmann::ordered_json json_number(double x) {

@@ -11,34 +11,19 @@
 #include "testbed/runner/execute.h"
 #include "testbed/runner/process/stop.h"
 #include "testbed/runner/spec/spec.h"
+#include "testbed/shell_word.h"
 
 namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Quotes of bash in which every byte can be written as something that a terminal shows.
-std::string ansi_c_word(const std::string& word) {
-  std::string escaped;
-  for (const char c : word) escaped += (c == '\'' || c == '\\' ? "\\" : "") + std::string(1, c);
-  return "$'" + printable(escaped) + "'";
-}
-
-/// A word as a shell reads it back: in quotes unless it is plain.
-std::string shell_word(const std::string& word) {
-  const std::string plain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  if (printable(word) != word) return ansi_c_word(word);
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 /// The command that goes on with a stopped run, as it would be typed.
-std::string resume_command(const RunRequest& request, const fs::path& folder) {
+std::string resume_command(const CommandContext& context, const RunRequest& request,
+                           const fs::path& folder) {
   std::string command = "geoprior run " + shell_word(request.experiment.id_or_file);
-  for (const auto& name : request.experiment.load.variants) command += " --variant " + name;
+  for (const auto& name : request.experiment.load.variants)
+    command += " --variant " + shell_word(name);
   for (const auto& set : request.experiment.load.sets) command += " --set " + shell_word(set);
   if (request.experiment.load.quick) command += " --quick";
   if (request.experiment.load.threads) {
@@ -46,11 +31,12 @@ std::string resume_command(const RunRequest& request, const fs::path& folder) {
   }
   if (!request.pictures) command += " --no-pictures";
   if (request.table) command += " --table";
+  if (context.allow_commands) command += " --allow-commands";
   return command + " --out " + shell_word(folder.string()) + " --resume";
 }
 
 int report_stop(const CommandContext& context, const RunRequest& request, const fs::path& folder) {
-  const std::string command = resume_command(request, folder);
+  const std::string command = resume_command(context, request, folder);
   say("stopped; go on with:  " + command);
   if (context.json) {
     print_json({{"stopped", true}, {"run", folder.string()}, {"resume", command}});

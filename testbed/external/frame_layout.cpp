@@ -40,6 +40,18 @@ bool is_pattern(const ExternalOptions& options) {
   return options.frames.find('%') != std::string::npos;
 }
 
+/// Also where it is a link that leads nowhere.
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::symlink_status(file, ignored).type() != fs::file_type::not_found;
+}
+
+/// What a program left lies in its folder; files may be anywhere.
+fs::path path_of_frames(const ExternalOptions& options, const fs::path& base) {
+  return options.command.empty() ? (base / options.frames).lexically_normal()
+                                 : path_below(base, options.frames);
+}
+
 /// Number of a frame in a column.
 std::size_t index_of(const CsvTable& table, const CsvTable::Row& row, const char* column) {
   const double x = *table.number(row, column);
@@ -109,7 +121,9 @@ void read_pieces(const fs::path& folder, ExternalFrames& found) {
     if (piece.frame >= found.frames.size()) found.frames.resize(piece.frame + 1);
     auto& pieces = found.frames[piece.frame].pieces;
     for (const ExternalFrames::Piece& other : pieces) {
-      if (other.name != piece.name) continue;
+      // A part and a table of a frame may have one name.
+      const bool alike = (other.file.extension() == ".csv") == (extension == ".csv");
+      if (other.name != piece.name || !alike) continue;
       throw Error("'" + piece.name + "' of frame " + std::to_string(piece.frame) +
                       " is there twice: " + other.file.filename().string(),
                   file.string());
@@ -118,14 +132,27 @@ void read_pieces(const fs::path& folder, ExternalFrames& found) {
   }
 }
 
+/// Numbers may begin anywhere and go in steps, but none is left out.
+void require_even_numbers(const std::vector<FoundFile>& files) {
+  for (std::size_t i = 2; i < files.size(); ++i) {
+    const int step = files[1].number - files[0].number;
+    if (files[i].number == files[i - 1].number + step) continue;
+    throw Error(
+        "follows " + files[i - 1].file.filename().string() + ": files are missing between them",
+        files[i].file.string(), "numbers in even steps, as those before");
+  }
+}
+
 void read_pattern(const fs::path& pattern, const std::string& part, ExternalFrames& found) {
-  const FoundFiles files = find_pattern(pattern);
-  for (const FoundFile& one : files.files) {
-    if (!is_part_extension(one.file.extension().string())) {
-      throw Error("unknown extension '" + one.file.extension().string() + "'", one.file.string(),
-                  part_extensions());
-    }
-    found.frames.push_back({{}, {{part, one.file}}, {}});
+  if (!is_part_extension(pattern.extension().string())) {
+    throw Error("unknown extension '" + pattern.extension().string() + "'", pattern.string(),
+                part_extensions());
+  }
+  const std::vector<FoundFile> files = find_numbered(pattern).files;
+  require_even_numbers(files);
+  for (const FoundFile& one : files) {
+    const fs::path file = path_below(pattern.parent_path(), one.file.filename());
+    found.frames.push_back({{}, {{part, file}}, {}});
   }
 }
 
@@ -134,8 +161,12 @@ void read_diagnostics(const fs::path& file, ExternalFrames& found) {
   std::set<std::size_t> seen;
   for (const CsvTable::Row& row : table.rows()) {
     const std::size_t frame = index_of(table, row, "frame");
-    if (frame >= found.frames.size() || !seen.insert(frame).second) {
-      throw Error("frame " + std::to_string(frame) + " is there twice, or is none", row.place);
+    if (frame >= found.frames.size()) {
+      throw Error("there is no frame " + std::to_string(frame), row.place,
+                  "0 to " + std::to_string(found.frames.size() - 1));
+    }
+    if (!seen.insert(frame).second) {
+      throw Error("frame " + std::to_string(frame) + " is there twice", row.place);
     }
     for (const std::string& name : table.others()) {
       require_plain_name(name, "a diagnostic", file.string());
@@ -217,7 +248,8 @@ void find_parameters(const ExternalOptions& options, const fs::path& folder, con
   std::error_code ignored;
   if (!options.parameters.empty()) {
     set_parameters(options.parameters, "the option parameters", found);
-  } else if (const fs::path file = folder / kParameters; fs::exists(file, ignored)) {
+  } else if (is_there(folder / kParameters)) {
+    const fs::path file = path_below(folder, kParameters);
     set_parameters(parameters_of_file(file), file.string(), found);
   }
   require_parameters_of_scene(scene, found);
@@ -236,10 +268,10 @@ ExternalFrames find_in_layout(const ExternalOptions& options, const fs::path& ro
   read_pieces(has_room ? path_below(root, kFrames) : root, found);
   require_no_gaps(found);
   find_parameters(options, root, scene, found);
-  if (fs::exists(root / kDiagnostics, ignored)) {
+  if (is_there(root / kDiagnostics)) {
     read_diagnostics(path_below(root, kDiagnostics), found);
   }
-  if (fs::exists(root / kEvents, ignored)) {
+  if (is_there(root / kEvents)) {
     found.events = read_events_csv(path_below(root, kEvents));
   }
   for (const fs::path& file : sorted_entries(root / kArtifacts)) {
@@ -311,7 +343,7 @@ std::string events_csv(const std::vector<Event>& events) {
 
 ExternalFrames find_external_frames(const ExternalOptions& options, const fs::path& base,
                                     const std::string& default_part, const Scene& scene) {
-  const fs::path path = (base / options.frames).lexically_normal();
+  const fs::path path = path_of_frames(options, base);
   if (!is_pattern(options)) {
     std::error_code ignored;
     if (!fs::is_directory(path, ignored)) {
@@ -330,7 +362,7 @@ ExternalFrames find_external_frames(const ExternalOptions& options, const fs::pa
 
 std::vector<fs::path> files_of_external_frames(const ExternalOptions& options,
                                                const fs::path& base) {
-  const fs::path path = (base / options.frames).lexically_normal();
+  const fs::path path = path_of_frames(options, base);
   std::vector<fs::path> files;
   const auto add_if_file = [&](const fs::path& file) {
     std::error_code ignored;
@@ -338,7 +370,7 @@ std::vector<fs::path> files_of_external_frames(const ExternalOptions& options,
   };
   if (is_pattern(options)) {
     if (!matches_any(path)) return files;
-    for (const FoundFile& found : find_pattern(path).files) add_if_file(found.file);
+    for (const FoundFile& found : find_numbered(path).files) add_if_file(found.file);
     add_if_file(path.parent_path() / kParameters);
     return files;
   }

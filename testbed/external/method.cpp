@@ -12,8 +12,10 @@
 #include "testbed/external/scene_folder.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
-#include "testbed/joined.h"
+#include "testbed/formats/wav_file.h"
+#include "testbed/runner/benchmark.h"
 #include "testbed/runner/process/run_context.h"
+#include "testbed/shell_word.h"
 
 namespace geoprior {
 namespace {
@@ -21,6 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kOut = "out";
+
+// Diagnostics of a command's first frame.
+constexpr const char* kWall = "process_wall";
+constexpr const char* kProcessor = "process_processor";
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
@@ -87,28 +93,22 @@ class ExternalProcess final : public Process {
     const CommandEnd end = started(context);
     if (end.stopped) return;
     if (!end.failure.empty()) throw NotApplicable(end.failure, options_.command.front());
-    push_made(sink, context,
-              {{"process_wall", end.wall_s},
-               {"process_processor", end.processor_s},
-               {"process_peak_memory", end.peak_MB}});
+    push_made(sink, context, end);
   }
 
  private:
-  /// Of the command, gone with its files when it is done: what counts was recorded.
+  /// Of the command, gone with its files when it is done: what counts was recorded. All of
+  /// <run>/external goes, whatever the command made or renamed there.
   class WorkFolder {
    public:
-    WorkFolder(fs::path folder, RunContext& context)
-        : folder_(std::move(folder)), context_(context) {
+    WorkFolder(const fs::path& folder, RunContext& context)
+        : room_(folder.parent_path().parent_path()), context_(context) {
       remove();
-      make_folders(folder_);
+      make_folders(folder);
     }
     ~WorkFolder() {
       const UntimedReading untimed(context_);
       remove();
-      // <run>/external/<case>: unless another variant is there.
-      std::error_code stays;
-      fs::remove(folder_.parent_path(), stays);
-      fs::remove(folder_.parent_path().parent_path(), stays);
     }
     WorkFolder(const WorkFolder&) = delete;
     WorkFolder& operator=(const WorkFolder&) = delete;
@@ -116,9 +116,9 @@ class ExternalProcess final : public Process {
    private:
     void remove() const {
       std::error_code ignored;
-      fs::remove_all(folder_, ignored);
+      fs::remove_all(room_, ignored);
     }
-    fs::path folder_;
+    fs::path room_;
     RunContext& context_;
   };
 
@@ -136,12 +136,12 @@ class ExternalProcess final : public Process {
   }
 
   /// What the command made. Messages name its files as it knows them: the folder goes.
-  void push_made(FrameSink& sink, RunContext& context, const std::map<std::string, double>& cost) {
+  void push_made(FrameSink& sink, RunContext& context, const CommandEnd& end) {
     const auto in_its_words = [&](const Error& error) {
       return replaced(error.what(), site_.work.string() + "/", "");
     };
     try {
-      push(sink, context, site_.work, cost);
+      push(sink, context, site_.work, end);
     } catch (const NotApplicable& error) {
       throw NotApplicable(in_its_words(error));
     } catch (const Error& error) {
@@ -150,8 +150,7 @@ class ExternalProcess final : public Process {
   }
 
   /// Reads and pushes everything. A failure before the first frame is that of the variant alone.
-  void push(FrameSink& sink, RunContext& context, const fs::path& base,
-            const std::map<std::string, double>& cost) {
+  void push(FrameSink& sink, RunContext& context, const fs::path& base, const CommandEnd& end) {
     ExternalOptions options = options_;
     if (options.frames.empty()) options.frames = kOut;
     std::optional<ExternalFrames> found;
@@ -168,7 +167,7 @@ class ExternalProcess final : public Process {
           const UntimedReading untimed(context);
           frame = checked_frame(entry, pushed);
         }
-        if (pushed == 0) frame->diagnostics.insert(cost.begin(), cost.end());
+        if (!options_.command.empty()) take_cost(*frame, pushed == 0 ? &end : nullptr);
         sink.frame(std::move(*frame));
         ++pushed;
         context.progress(static_cast<double>(pushed) / static_cast<double>(found->frames.size()));
@@ -182,10 +181,23 @@ class ExternalProcess final : public Process {
     }
   }
 
+  /// What a command took is measured here, whatever its diagnostics say.
+  /// @param end  where the frame is the first
+  static void take_cost(Frame& frame, const CommandEnd* end) {
+    for (const auto& [name, of_end] :
+         {std::pair(kWall, &CommandEnd::wall_s), std::pair(kProcessor, &CommandEnd::processor_s),
+          std::pair(kPeakMemory, &CommandEnd::peak_MB)}) {
+      frame.diagnostics.erase(name);
+      if (end != nullptr) frame.diagnostics[name] = end->*of_end;
+    }
+  }
+
   static void push_rest(FrameSink& sink, RunContext& context, const ExternalFrames& found) {
     const UntimedReading untimed(context);
     for (const Event& event : found.events) sink.event(event);
     for (const ExternalFrames::Piece& artifact : found.artifacts) {
+      std::vector<std::string> notes;
+      if (artifact.file.extension() == ".wav") (void)read_wav(artifact.file, notes);
       sink.artifact({artifact.name, bytes_of_file(artifact.file)});
     }
   }
@@ -244,17 +256,17 @@ void add_external_method(Topic& topic) {
       throw NotApplicable(error.what());
     }
   };
-  entry.starts = [](const OptionSet& set) { return joined(external_options(set).command, " "); };
+  entry.starts = [](const OptionSet& set) { return shell_line(external_options(set).command); };
   entry.inputs = external_inputs;
   topic.methods.push_back(std::move(entry));
 
   DiagnosticTable rows;
   rows.unmeasured("cost of another program, which no frame shows",
-                  {{"process_wall", "s", "wall time of an external command, on its first frame"},
-                   {"process_processor", "s",
+                  {{kWall, "s", "wall time of an external command, on its first frame"},
+                   {kProcessor, "s",
                     "processor time of an external command and the children it waited for, on its "
                     "first frame"},
-                   {"process_peak_memory", "MB",
+                   {kPeakMemory, "MB",
                     "resident memory of the largest process of an external command, on its first "
                     "frame"}});
   for (DiagnosticEntry& row : rows.rows()) topic.diagnostics.push_back(std::move(row));

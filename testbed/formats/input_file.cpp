@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include "core/error.h"
-#include "testbed/formats/system_reason.h"
 
 namespace geoprior {
 
@@ -28,6 +27,10 @@ const char* kind_text(fs::file_type type) {
   }
 }
 
+std::string reason_of_reading(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
 }  // namespace
 
 void require_regular_file(const fs::path& file) {
@@ -35,7 +38,8 @@ void require_regular_file(const fs::path& file) {
   const fs::file_status status = fs::status(file, code);
   if (fs::is_regular_file(status)) return;
   if (!fs::exists(status)) {
-    throw Error("cannot be read: " + system_reason(code ? code.value() : ENOENT), file.string());
+    throw Error("cannot be read: " + reason_of_reading(code ? code.value() : ENOENT),
+                file.string());
   }
   throw Error(std::string("is ") + kind_text(status.type()), file.string(), "a file");
 }
@@ -43,7 +47,7 @@ void require_regular_file(const fs::path& file) {
 std::ifstream open_input_file(const fs::path& file) {
   require_regular_file(file);
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error("cannot be read: " + system_reason(errno), file.string());
+  if (!in) throw Error("cannot be read: " + reason_of_reading(errno), file.string());
   return in;
 }
 

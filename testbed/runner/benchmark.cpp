@@ -63,9 +63,18 @@ void put(const ProcessTimes& times, int repetition, int repetitions, Timing& tim
       put_one(phase, times.frames.size(), frame, seconds);
     }
   }
-  for (const auto& [phase, seconds] : times.rest) {
-    put_one(phase == "run" ? "finish" : "finish:" + phase, 1, 0, seconds);
-  }
+  for (const auto& [phase, seconds] : times.rest) put_one(name_of_rest(phase), 1, 0, seconds);
+}
+
+/// One time in place of those of the frames.
+ProcessTimes as_a_whole(const ProcessTimes& times) {
+  const auto run = [](const std::map<std::string, double>& phases) {
+    const auto found = phases.find("run");
+    return found == phases.end() ? 0 : found->second;
+  };
+  double sum = run(times.rest);
+  for (const auto& phases : times.frames) sum += run(phases);
+  return {{}, {{kWholeProcess, sum}}};
 }
 
 /// The recorded run as the first repetition.
@@ -100,20 +109,6 @@ const std::vector<std::vector<double>>* whole_time(const Timing& timing) {
   return nullptr;
 }
 
-/// Seconds of each repetition, all frames and what follows them. NaN where a frame has no time.
-std::vector<double> whole_runs(const Timing& timing) {
-  std::vector<double> sums;
-  for (const char* phase : {"run", "solve", "finish"}) {
-    const auto found = timing.find(phase);
-    if (found == timing.end()) continue;
-    for (const std::vector<double>& row : found->second) {
-      sums.resize(std::max(sums.size(), row.size()), 0);
-      for (std::size_t r = 0; r < row.size(); ++r) sums[r] += row[r];
-    }
-  }
-  return sums;
-}
-
 /// Times of two variants in pairs.
 struct Pairs {
   std::string kind;
@@ -132,6 +127,24 @@ Pairs pairs_of(const VariantRecord& a, const Timing& of_a, const VariantRecord& 
 }
 
 }  // namespace
+
+std::string name_of_rest(const std::string& phase) {
+  if (phase == kWholeProcess) return phase;
+  return phase == "run" ? "finish" : "finish:" + phase;
+}
+
+std::vector<double> whole_runs(const Timing& timing) {
+  std::vector<double> sums;
+  for (const char* phase : {"run", "solve", "finish", kWholeProcess}) {
+    const auto found = timing.find(phase);
+    if (found == timing.end()) continue;
+    for (const std::vector<double>& row : found->second) {
+      sums.resize(std::max(sums.size(), row.size()), 0);
+      for (std::size_t r = 0; r < row.size(); ++r) sums[r] += row[r];
+    }
+  }
+  return sums;
+}
 
 std::map<std::string, Timing> benchmark_poses(const std::vector<BenchmarkEntry>& entries,
                                               const std::vector<double>& parameters,
@@ -200,7 +213,8 @@ std::map<std::string, Timing> benchmark_processes(const std::vector<ProcessEntry
                     "variant '" + entry.name + "'", "the same frames for the same seed");
       }
       if (round < options.warm_up) continue;
-      put(times, round - options.warm_up, options.repetitions, timing[entry.name]);
+      put(entry.as_a_whole ? as_a_whole(times) : times, round - options.warm_up,
+          options.repetitions, timing[entry.name]);
     }
   }
   return timing;

@@ -34,6 +34,14 @@ const VariantSpec* find_variant(const std::vector<VariantSpec>& variants, const 
   return nullptr;
 }
 
+/// Resident memory of a program from outside, as it is recorded of its first frame.
+std::optional<MemoryUse> memory_of_program(const VariantRecord& record) {
+  const auto found = record.diagnostics.find(kPeakMemory);
+  if (found == record.diagnostics.end() || found->second.values.empty()) return std::nullopt;
+  constexpr double kBytesPerMB = 1e6;
+  return MemoryUse{0, static_cast<std::uint64_t>(found->second.values.front() * kBytesPerMB)};
+}
+
 }  // namespace
 
 std::vector<const VariantSpec*> references_first(const std::vector<VariantSpec>& variants) {
@@ -68,14 +76,17 @@ class CaseRunner::Sink final : public FrameSink {
       : runner_(runner), variant_(variant), context_(context), earlier_(std::move(earlier)) {}
 
   void frame(Frame frame) override {
-    const journal::Numbers seconds = with_earlier(context_.lap());
-    earlier_.clear();
+    const bool from_outside = runner_.comes_from_outside(variant_);
+    journal::Numbers seconds;
+    if (!from_outside) {
+      seconds = with_earlier(context_.lap());
+      earlier_.clear();
+    }
     const TimedContext::Pause pause(context_);
     require_finite(frame, runner_.state_of(variant_).record.frames.size(), variant_.method);
     // Frames from outside come with their files.
-    const std::vector<Artifact> files = runner_.comes_from_outside(variant_)
-                                            ? std::vector<Artifact>{}
-                                            : runner_.scene_->files_of(frame);
+    const std::vector<Artifact> files =
+        from_outside ? std::vector<Artifact>{} : runner_.scene_->files_of(frame);
     for (const Artifact& file : files)
       guarded([&] { runner_.recorder_.write_artifact(runner_.place(variant_), file); });
     guarded([&] { runner_.record_frame(variant_, std::move(frame), seconds); });
@@ -201,6 +212,11 @@ bool CaseRunner::comes_from_outside(const VariantSpec& variant) const {
   return static_cast<bool>(method_of(topic_, variant.method).make_at);
 }
 
+bool CaseRunner::starts_program(const VariantSpec& variant) const {
+  const MethodEntry& entry = method_of(topic_, variant.method);
+  return entry.starts && !entry.starts(*variant.options).empty();
+}
+
 MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log) {
   if (const auto found = prepared_.find(variant.name); found != prepared_.end()) {
     return found->second;
@@ -217,12 +233,23 @@ MethodEntry::Instance& CaseRunner::prepare(const VariantSpec& variant, bool log)
   if (log) {
     journal::BeginLine line{place(variant), context.take_phases()};
     if (entry.inputs) {
-      for (const auto& file : entry.inputs(site_of(variant), *variant.options))
-        line.inputs.push_back({input_name(file), sha256_of_file(file)});
+      add_inputs(variant, line);
     }
     recorder_.add(line);
   }
   return prepared_.emplace(variant.name, std::move(*instance)).first->second;
+}
+
+void CaseRunner::add_inputs(const VariantSpec& variant, journal::BeginLine& line) {
+  try {
+    for (const auto& file :
+         method_of(topic_, variant.method).inputs(site_of(variant), *variant.options)) {
+      line.inputs.push_back({input_name(file), sha256_of_file(file)});
+    }
+  } catch (const Error& error) {
+    if (!comes_from_outside(variant)) throw;
+    throw NotApplicable(error.what());
+  }
 }
 
 std::function<void()> CaseRunner::farewell_within_frame(const VariantSpec& variant) {
@@ -308,7 +335,12 @@ bool CaseRunner::run_process(const VariantSpec& variant, Process& process, Timed
     end.error = error.what();
   }
   sink.rethrow_failure();
-  end.timing = sink.with_earlier(context.take_phases());
+  const journal::Numbers seconds = sink.with_earlier(context.take_phases());
+  if (!comes_from_outside(variant)) {
+    end.timing = seconds;
+  } else if (starts_program(variant)) {
+    end.timing = {{kWholeProcess, seconds.at("run")}};
+  }
   return !end.error.empty() || !context.stop_was_told();
 }
 
@@ -371,7 +403,11 @@ bool CaseRunner::run_variant(const VariantSpec& variant) {
     complete = run_process(variant, *process, context, end);
   }
   if (!complete) return false;
-  end.memory = memory.use();
+  if (starts_program(variant)) {
+    end.memory = memory_of_program(state_of(variant).record);
+  } else if (!comes_from_outside(variant)) {
+    end.memory = memory.use();
+  }
   if (!end.error.empty()) {
     tell_failure(variant, end.error);
   }
@@ -459,8 +495,11 @@ bool CaseRunner::time_processes(std::map<std::string, Timing>& timing) {
     if (is_null_control(variant.role)) continue;
     // A process that failed would fail again; its record keeps the times of its frames.
     if (record.status == "failed") continue;
+    const bool from_outside = comes_from_outside(variant);
+    if (from_outside && !starts_program(variant)) continue;  // files are read in no time of theirs
     if (auto* process = std::get_if<std::unique_ptr<Process>>(&prepare(variant, false))) {
-      entries.push_back({variant.name, process->get(), record.timing, record.frames.size()});
+      entries.push_back(
+          {variant.name, process->get(), record.timing, record.frames.size(), from_outside});
     }
   }
   if (entries.empty()) return true;
@@ -484,9 +523,7 @@ bool CaseRunner::time_variants() {
     variants.back().name = state.record.name;
     variants.back().role = state.record.role;
     variants.back().status = state.record.status;
-    // A program that makes all frames at once has no time a frame: whole runs are compared.
-    if (!method_of(topic_, state.record.method).make_at)
-      variants.back().frames = state.record.frames;
+    variants.back().frames = state.record.frames;
   }
   line.ratios = timing_ratios(variants, line.timing, scene_->frames_share_work(), spec_.seed);
   recorder_.add(line);

@@ -51,9 +51,13 @@ class CaseRunner {
   /// Whether its frames are made outside of the program: what is wrong with them is no error of the
   /// run.
   [[nodiscard]] bool comes_from_outside(const VariantSpec& variant) const;
+  /// Whether that program is started by the run: else its frames are files.
+  [[nodiscard]] bool starts_program(const VariantSpec& variant) const;
   VariantState& state_of(const VariantSpec& variant) { return state_.variant_of(place(variant)); }
   void load(const OptionSet& options, std::vector<StoredFile> inputs);
   MethodEntry::Instance& prepare(const VariantSpec& variant, bool log);
+  /// The files that make the variant's result. @throws NotApplicable  when one is not readable
+  void add_inputs(const VariantSpec& variant, journal::BeginLine& line);
   bool run_variant(const VariantSpec& variant);
   bool run_or_refuse(const VariantSpec& variant);
   void refuse(const VariantSpec& variant, const NotApplicable& reason);

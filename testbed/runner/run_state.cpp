@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "testbed/runner/benchmark.h"
 #include "testbed/runner/journal/event_table.h"
 #include "testbed/runner/journal/record_names.h"
 
@@ -25,11 +26,8 @@ void put(std::vector<std::vector<double>>& rows, std::size_t index, double secon
   rows.push_back({seconds});
 }
 
-/// What follows the last frame of a process is no frame's: "finish", and the phases in it.
 void put_rest(const journal::Numbers& seconds, VariantRecord& record) {
-  for (const auto& [phase, value] : seconds) {
-    record.timing[phase == "run" ? "finish" : "finish:" + phase] = {{value}};
-  }
+  for (const auto& [phase, value] : seconds) record.timing[name_of_rest(phase)] = {{value}};
 }
 
 template <class Map, class Values>

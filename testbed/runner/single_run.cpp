@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
+#include "testbed/joined.h"
 #include "testbed/runner/case_runner.h"
 #include "testbed/runner/journal/content_hash.h"
 #include "testbed/runner/journal/journal.h"
@@ -247,16 +248,19 @@ void require_one_that_ran(const RunState& state) {
 void require_allowed_commands(const Experiment& experiment, const Topic& topic,
                               const ExecuteRequest& request) {
   if (request.allow_commands) return;
+  std::vector<std::string> started;
   for (const CaseSpec& one : experiment.cases) {
     for (const VariantSpec& variant : one.variants) {
       const MethodEntry& method = method_of(topic, variant.method);
       const std::string command = method.starts ? method.starts(*variant.options) : "";
-      if (command.empty()) continue;
-      throw Error("variant '" + variant.name + "' would start: " + command,
-                  experiment.file.string(),
-                  "--allow-commands, after a look at the file and its program");
+      const std::string line = "variant '" + variant.name + "' would start: " + command;
+      const bool is_said = std::find(started.begin(), started.end(), line) != started.end();
+      if (!command.empty() && !is_said) started.push_back(line);
     }
   }
+  if (started.empty()) return;
+  throw Error(joined(started, "; "), experiment.file.string(),
+              "--allow-commands, after a look at the file and its programs");
 }
 
 /// The request for the cases of a run in `folder`: its farewell speaks of that folder, also while

@@ -12,6 +12,7 @@
 #include "experiments/fluid/scene/feature_files.h"
 #include "testbed/formats/wav_file.h"
 #include "tests/fuzz/sample_features.h"
+#include "tests/fuzz/sample_layouts.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/long_tests.h"
 #include "tests/testbed/fake_run.h"
@@ -105,6 +106,20 @@ TEST(LongFuzz, ScriptsOfRulesRunOrThrowError) {
 }
 TEST(LongFuzz, ReaderOfPartsInScenesAcceptsOrThrowsError) {
   run_on("parts.glb", {corpus_file("blocks.glb")}, fuzz_gltf_parts);
+}
+
+TEST(LongFuzz, FramesOfOthersAreReadOrThrowError) {
+  const Files layout = sheet_layout();
+  constexpr Counts kFolders{100, 1000};
+  run_on("frames.csv", {layout.at("frames.csv")}, fuzz_frame_list, kFolders);
+  run_on("diagnostics.csv", {layout.at("diagnostics.csv")}, fuzz_diagnostics, kFolders);
+  run_on("events.csv", {layout.at("events.csv")}, fuzz_events, kFolders);
+  run_on("correspondence", {"vertex\n2\n0\n1\n"}, fuzz_correspondence);
+  std::vector<std::string> parts = corpus(".ply");
+  for (const auto& [name, bytes] : layout) {
+    if (name.ends_with(".ply")) parts.push_back(bytes);
+  }
+  run_on("parts.ply", parts, fuzz_ply_part);
 }
 
 TEST(LongFuzz, MapReaderAcceptsOrThrowsError) {

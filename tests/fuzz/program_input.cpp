@@ -14,6 +14,7 @@
 #include "tests/fuzz/fuzzed_program.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sample_features.h"
+#include "tests/fuzz/sample_layouts.h"
 #include "tests/testbed/await.h"
 #include "tests/testbed/program_process.h"
 
@@ -152,6 +153,16 @@ ProgramInput sculpt_input(const std::string& mutated) {
   return input;
 }
 
+/// An experiment that measures frames of another program; one file of them is mutated.
+ProgramInput outside_input(const std::string& topic, const std::string& file) {
+  const Files layout = topic == "fluid" ? water_layout() : sheet_layout();
+  ProgramInput input = input_of(topic, "outside", "theirs/" + file, {layout.at(file)});
+  for (const auto& [name, bytes] : layout) {
+    input.home["experiments/" + topic + "/theirs/" + name] = bytes;
+  }
+  return input;
+}
+
 // Inputs that are runs.
 
 /// What draws a report: a home has it.
@@ -257,7 +268,28 @@ ProgramInput reference_input() {
 
 void PrintTo(const InputKind& kind, std::ostream* out) { *out << kind.name; }
 
-std::vector<InputKind> input_kinds() {
+namespace {
+
+/// Frames that other programs made.
+std::vector<InputKind> outside_kinds() {
+  return {
+      {"OutsideFrames", 0.3, [] { return outside_input("fluid", "frames.csv"); }},
+      {"OutsideDiagnostics", 0.3, [] { return outside_input("paper", "diagnostics.csv"); }},
+      {"OutsideEvents", 0.3, [] { return outside_input("fluid", "events.csv"); }},
+      {"OutsideTable", 0.3, [] { return outside_input("fluid", "frames/sea_0000.csv"); }},
+      {"OutsideVtp", 0.5, [] { return outside_input("fluid", "frames/surface_0000.vtp"); }},
+      {"OutsideGrid", 0.5, [] { return outside_input("fluid", "frames/samples_0000.vti"); }},
+      {"OutsidePly", 0.5, [] { return outside_input("fluid", "frames/surface_0001.ply"); }},
+      {"OutsideObj", 0.3, [] { return outside_input("fluid", "frames/surface_0002.obj"); }},
+      {"OutsideGlb", 0.3, [] { return outside_input("fluid", "frames/surface_0003.glb"); }},
+      {"OutsideSheet", 1, [] { return outside_input("paper", "frames/surface_0001.ply"); }},
+      {"OutsideHands", 0.3, [] { return outside_input("paper", "frames/handles_0001.ply"); }},
+      {"OutsideTears", 0.3, [] { return outside_input("paper", "frames/tears_0001.ply"); }},
+  };
+}
+
+/// Files that are inputs of experiments or commands, and what runs consist of.
+std::vector<InputKind> own_kinds() {
   const auto circle = [] { return finished_run("toy-circle"); };
   const auto pendulum = [] { return finished_run("toy-pendulum"); };
   constexpr double kSlow = 0.1, kSlowest = 0.03;  // VTK draws for a second, Python plots for three
@@ -315,6 +347,14 @@ std::vector<InputKind> input_kinds() {
       {"Grid", 0.3, [=] { return run_input(pendulum(), ".vti", {kExport}); }},
       {"Table", 0.3, [] { return run_input(unassembled_run(), ".csv", {kResume}); }},
   };
+}
+
+}  // namespace
+
+std::vector<InputKind> input_kinds() {
+  std::vector<InputKind> kinds = own_kinds();
+  for (InputKind& kind : outside_kinds()) kinds.push_back(std::move(kind));
+  return kinds;
 }
 
 }  // namespace geoprior::test

@@ -33,6 +33,7 @@ void fuzz_gltf_parts(const std::uint8_t* data, std::size_t size);
 void fuzz_turtle(const std::uint8_t* data, std::size_t size);
 void fuzz_ntriples(const std::uint8_t* data, std::size_t size);
 void fuzz_rdfxml(const std::uint8_t* data, std::size_t size);
+void fuzz_ply_part(const std::uint8_t* data, std::size_t size);
 // These readers open a file: the bytes are written to one.
 void fuzz_points(const std::uint8_t* data, std::size_t size);
 void fuzz_svg(const std::uint8_t* data, std::size_t size);
@@ -40,6 +41,11 @@ void fuzz_sketch(const std::uint8_t* data, std::size_t size);
 void fuzz_exr(const std::uint8_t* data, std::size_t size);
 void fuzz_wav(const std::uint8_t* data, std::size_t size);
 void fuzz_run_file(const std::uint8_t* data, std::size_t size);
+void fuzz_correspondence(const std::uint8_t* data, std::size_t size);
+/// Beside the other files of a folder of frames (docs/external-methods.md), as the two below.
+void fuzz_frame_list(const std::uint8_t* data, std::size_t size);
+void fuzz_diagnostics(const std::uint8_t* data, std::size_t size);
+void fuzz_events(const std::uint8_t* data, std::size_t size);
 void fuzz_feature_library(const std::uint8_t* data, std::size_t size);
 
 }  // namespace geoprior::test

@@ -1,11 +1,13 @@
 #include "experiments/sound/measures.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
 #include "testbed/formats/wav_file.h"
+#include "tests/testbed/run_fixture.h"
 
 namespace geoprior::sound {
 namespace {
@@ -65,6 +67,17 @@ TEST(SoundMeasures, OctavesOfWhiteNoiseRiseByThreeDecibels) {
     sum += std::pow(10, m.octaves[i] / 10);
   }
   EXPECT_NEAR(sum, 1, 1e-9);
+}
+
+// Events may come from another program.
+TEST(SoundMeasures, NameTheEventThatHasNoNumberThatIsRead) {
+  Event snap = a_snap("crac", 0.5, 1e-5);
+  snap.numbers.erase("free_border_m");
+  EXPECT_THAT(test::error_of([&] {
+                (void)measured({a_snap("flap", 0.2, 1e-5), snap});
+              }),
+              ::testing::AllOf(::testing::HasSubstr("the crac at 0.5"),
+                               ::testing::HasSubstr("'free_border_m'")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -263,6 +264,98 @@ TEST_F(SoundScenes, AreHeardThroughABankThatWasWrittenToAFolder) {
   EXPECT_THAT(error("my-bank/bank.csv"), HasSubstr("is no folder"));
   EXPECT_THAT(error("your-bank"), HasSubstr("no folder 'your-bank'"));
   EXPECT_THAT(error("your-bank"), HasSubstr(beside("your-bank").string()));
+}
+
+// What a program from outside is given: one clamped swatch of three is held along its ruling.
+TEST_F(SoundScenes, GiveTheMeshOnceAndThenWhereItIs) {
+  const auto s = scene(kSwatch);
+  const Frame given = s->given();
+  ASSERT_EQ(given.parts.size(), static_cast<std::size_t>(s->animation->frame_count()));
+  const Part& first = given.require_part("sheet_0000", Part::Kind::triangles);
+  const SheetSnapshot start = s->animation->snapshot(0);
+  EXPECT_EQ(first.points, start.x);
+  EXPECT_EQ(first.triangles, start.mesh.triangles);
+  EXPECT_EQ(first.require_array("pattern", NamedArray::On::points, 2).values, start.mesh.pattern);
+  const auto& handle = first.require_array("handle", NamedArray::On::points, 1).values;
+  EXPECT_EQ((handle.array() == 0).count(), 9) << "3 cm in edges of 4 mm at most";
+  EXPECT_EQ((handle.array() == -1).count(), handle.rows() - 9);
+  const Part& later = given.require_part("sheet_0003", Part::Kind::points);
+  EXPECT_EQ(later.points, s->animation->snapshot(3).x);
+  EXPECT_NE(later.points, first.points) << "one swatch has snapped";
+  EXPECT_EQ(given.require_table("frames").rows(3, 1), s->animation->time(3));
+  EXPECT_EQ(given.require_table("tears").rows.rows(), 0);
+}
+
+/// A square that is torn a step a frame, and that has another mesh from the third frame on.
+class TornSquare final : public SheetAnimation {
+ public:
+  [[nodiscard]] int frame_count() const override { return 4; }
+  [[nodiscard]] double time(int frame) const override { return frame; }
+  [[nodiscard]] std::string name() const override { return "torn"; }
+  [[nodiscard]] SheetSnapshot snapshot(int frame) const override {
+    SheetSnapshot out;
+    out.time = time(frame);
+    out.mesh.pattern.resize(4, 2);
+    out.mesh.pattern << 0, 0, 0.1, 0, 0.1, 0.1, 0, 0.1;
+    out.mesh.triangles.resize(2, 3);
+    if (frame < 2) {
+      out.mesh.triangles << 0, 1, 2, 0, 2, 3;
+    } else {
+      out.mesh.triangles << 0, 1, 3, 1, 2, 3;
+    }
+    out.x = Eigen::MatrixX3d::Constant(4, 3, frame);
+    out.v = Eigen::MatrixX3d::Constant(4, 3, 1);
+    for (int i = 0; i <= frame; ++i)
+      out.torn.push_back({0, i - 0.5, {0.01 * i, 0.05}, {frame + 0.0, 0, 0}});
+    return out;
+  }
+};
+
+TEST(SoundGiven, HasAMeshWhereItIsAnotherOneAndTearsWhereTheyWereAtTheTime) {
+  SoundScene scene;
+  scene.animation = std::make_shared<TornSquare>();
+  const Frame given = scene.given();
+  using Kind = Part::Kind;
+  const std::array<Kind, 4> kinds{Kind::triangles, Kind::points, Kind::triangles, Kind::points};
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "sheet_000" + std::to_string(i);
+    const Part& part = given.require_part(name, kinds[i]);
+    EXPECT_EQ(part.points(0, 0), i);
+    EXPECT_EQ(part.require_array("velocity", NamedArray::On::points, 3).values(2, 1), 1);
+  }
+  const Eigen::MatrixXd& tears = given.require_table("tears").rows;
+  ASSERT_EQ(tears.rows(), 4);
+  EXPECT_EQ(tears.col(1), Eigen::Vector4d(-0.5, 0.5, 1.5, 2.5)) << "time";
+  EXPECT_EQ(tears.col(4), Eigen::Vector4d(0, 1, 2, 3)) << "x, in the frame that has it first";
+}
+
+/// Still, and as large as asked for.
+class LargeSheet final : public SheetAnimation {
+ public:
+  explicit LargeSheet(Eigen::Index vertices) : vertices_(vertices) {}
+  [[nodiscard]] int frame_count() const override { return 2; }
+  [[nodiscard]] double time(int frame) const override { return frame; }
+  [[nodiscard]] std::string name() const override { return "large"; }
+  [[nodiscard]] SheetSnapshot snapshot(int frame) const override {
+    SheetSnapshot out;
+    out.time = time(frame);
+    out.mesh.pattern.setZero(vertices_, 2);
+    out.x.setZero(vertices_, 3);
+    return out;
+  }
+
+ private:
+  Eigen::Index vertices_;
+};
+
+TEST(SoundGiven, HasNoSheetsBeyondItsLimit) {
+  for (const int beyond : {0, 1}) {
+    SoundScene scene;
+    scene.animation = std::make_shared<LargeSheet>(SoundScene::kMostGiven / 2 + beyond);
+    const Frame given = scene.given();
+    EXPECT_EQ(given.parts.size(), beyond == 0 ? 2U : 0U);
+    EXPECT_EQ(given.require_table("frames").rows.rows(), 2);
+  }
 }
 
 }  // namespace

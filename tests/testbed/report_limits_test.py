@@ -97,7 +97,7 @@ class StrangeTextTest(unittest.TestCase):
 
     def test_bytes_that_are_no_utf8_are_escaped(self):
         self.assertEqual(printable(runfile.text(b"a\xff\xe9b")), r"a\xff\xe9b")
-        self.assertEqual(printable("bell\x07, \x9b, 90°\n"), "bell\\x07, \\x9b, 90°\n")
+        self.assertEqual(printable("bell\x07, \x9b, 90°\n"), "bell\\x07, \\xc2\\x9b, 90°\n")
         self.assertEqual(report_html.escape("\udcff<"), r"\xff&lt;")
 
     def test_folders_that_are_no_utf8_are_folders_like_others(self):

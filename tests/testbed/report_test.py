@@ -20,6 +20,7 @@ import xml.etree.ElementTree as ElementTree
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
+from urllib.parse import quote
 
 import h5py
 import numpy as np
@@ -27,6 +28,7 @@ import numpy as np
 RESULTS = Path(__file__).resolve().parents[2] / "results"
 sys.path.insert(0, str(RESULTS))
 
+import markdown_text  # noqa: E402
 import plots  # noqa: E402
 import report  # noqa: E402
 import runfile  # noqa: E402
@@ -35,6 +37,7 @@ import spectrogram  # noqa: E402
 import summary  # noqa: E402
 import tables  # noqa: E402
 import wording  # noqa: E402
+from geoprior_results.texts import printable  # noqa: E402
 
 ANGLES = np.array([0.0, 45.0, 90.0])
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJ"
@@ -579,6 +582,47 @@ class RunTest(unittest.TestCase):
         text = (self.folder / "summary.md").read_text(encoding="utf-8")
         self.assertIn("**falls short**: bulge stays", text)
         self.assertIn("4.00 ms", text)
+
+    def test_summary_has_no_markup_of_a_stranger(self):
+        # In each text a mark of its own, and one that ends the cell, the code or the line that it stands in.
+        marks = iter(f"<script>{i}</script> ![p](http://evil/{i}.png) | `c` **b** \n# h \u202e" for i in range(99))
+        shutil.rmtree(self.folder)
+        self.folder.mkdir()
+        make_run(self.folder, title=next(marks))
+        with signed(self.folder, "a") as file:
+            file.attrs.update(experiment_id=next(marks), git_commit=next(marks), start=next(marks), figure=next(marks))
+            case = file["cases/default"]
+            case.attrs["warnings"] = [next(marks)]
+            case["variants/implicit"].attrs.update(status="failed", error=next(marks))
+            first = case["variants/dual-quaternion"]
+            for group, old in ((case["variants"], "implicit"), (first["metrics"], "overlap_excess"),
+                               (first["timing"], "solve"), (file["study"], "growth"), (file["cases"], "default")):
+                group.move(old, quote(next(marks), safe=""))
+            file["study/" + list(file["study"])[0]].attrs.update(kind=next(marks), quantity=next(marks))
+            del file["claims"]
+            claim = (next(marks), "default", next(marks), 1.0, 2.0, 0, next(marks), "void", next(marks))
+            fields = zip(("text", "case", "detail", "left", "right", "holds", "null", "null_verdict", "null_detail"),
+                         ("text", "text", "text", "f8", "f8", "i4", "text", "text", "text"))
+            file["claims"] = table([claim], list(fields))
+            file.copy("cases/" + list(file["cases"])[0], "cases/second")
+        summary.main([str(self.folder)])
+        text = (self.folder / "summary.md").read_text(encoding="utf-8")
+        shown = re.sub(r"(?<!`)(`+)(?!`)[^\n]*?(?<!`)\1(?!`)", "", re.sub(r"\\[!-/:-@[-`{-~]", "", text))
+        self.assertGreater(text.count("&lt;script&gt;"), 15)
+        for mark in ("<script", "![", "](", "**b", "\n# h", "\u202e"):
+            self.assertNotIn(mark, shown)
+        for rows in re.findall(r"(?:^\|.*\n)+", shown, re.MULTILINE):
+            self.assertEqual(len({row.count("|") for row in rows.splitlines()}), 1, rows)
+
+    def test_texts_are_escaped_as_in_the_pages_of_a_comparison(self):
+        samples = json.loads(Path(__file__).with_name("foreign_texts.json").read_text(encoding="utf-8"))
+        for sample in samples:
+            self.assertEqual(printable(sample["text"]), sample["printable"])
+            self.assertEqual(markdown_text.escaped(sample["text"]), sample["markdown"])
+        self.assertEqual([markdown_text.code(text) for text in ("a", "a`b``c", "a\n\nb")],
+                         ["`a`", "``` a`b``c ```", "`a  b`"])
+        self.assertEqual(markdown_text.table(["a|b", "c"], [[r"d\|e", 1]]),
+                         [r"| a\|b | c |", "|---|---:|", r"| d\|e | 1 |"])
 
     def test_peak_memory_is_shown_where_it_was_measured(self):
         summary.main([str(self.folder)])

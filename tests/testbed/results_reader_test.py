@@ -4,6 +4,7 @@ Run with Debian's python3."""
 import contextlib
 import importlib.util
 import io
+import json
 import os
 import re
 import runpy
@@ -13,6 +14,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -20,6 +22,7 @@ HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(REPOSITORY / "results")]
 
+import runfile  # noqa: E402
 from geoprior_results import RunError, newest_run, open_run, open_runs, run_folders  # noqa: E402
 from report_test import ANGLES, make_run, signed  # noqa: E402
 
@@ -89,14 +92,31 @@ class OpenRun(Scratch):
         whole = path.read_bytes()
         for content in (b"", whole[:100], whole[:-1], whole[:5000] + b"\xff" + whole[5001:]):
             path.write_bytes(content)
-            with self.assertRaisesRegex(RunError, f"^{path}: is damaged or another file"):
+            with self.assertRaisesRegex(RunError, f"^{path}: is damaged or another file.* or force=True"):
                 open_run(self.run)
+        (self.run / "journal.jsonl").rename(self.run / "no journal")
+        with self.assertRaisesRegex(RunError, "is not in the journal .* or force=True"):
+            open_run(self.run)
+        with self.assertRaisesRegex(RunError, "is not in the journal .* or --force"):  # an option of scripts
+            runfile.read_run(self.run)
         path.write_bytes(whole[:len(whole) // 2])
         with self.assertRaisesRegex(RunError, f"^{path}: damaged or not a run file"):
             open_run(self.run, force=True)
         path.unlink()
         with self.assertRaisesRegex(RunError, f"^{path}: no such file"):
             open_run(self.run)
+
+    def test_shows_no_text_that_a_terminal_obeys_and_reads_what_is_not_shown_as_it_is(self):
+        turned = "\u202eknee\x1b[8m\x85"
+        with signed(self.run, "a") as file:
+            file.attrs["title"] = turned
+            file.attrs["experiment"] = '[figure_view]\nmetrics = ["\u202emetric"]\n'
+            options = json.dumps({"command": [turned]}, ensure_ascii=False)
+            file["cases/default/variants/implicit"].attrs["options"] = options
+        run = open_run(self.run)
+        self.assertEqual(run.title, r"\xe2\x80\xaeknee\x1b[8m\xc2\x85")
+        self.assertEqual(run.case("default").variant("implicit").options, {"command": [turned]})
+        self.assertEqual(run.view, {"metrics": ["\u202emetric"]})
 
     def test_names_what_a_run_file_lacks(self):
         with signed(self.run, "a") as file:
@@ -118,6 +138,16 @@ class NewestRun(Scratch):
         self.assertEqual(run_folders("test/knee", self.root), self.folders)
         self.assertEqual(newest_run("test/knee", self.root).folder, self.folders[-1])
         self.assertEqual(len(list(open_runs("test/knee", str(self.root)))), 3)
+
+    def test_is_looked_for_below_geoprior_runs_where_nothing_else_is_said(self):
+        with mock.patch.dict(os.environ, GEOPRIOR_RUNS=str(self.root)):
+            self.assertEqual(newest_run("test/knee").folder, self.folders[-1])
+            with self.assertRaisesRegex(RunError, f"^{self.root}: has no finished run of 'test/elbow'"):
+                newest_run("test/elbow")
+            self.assertEqual(run_folders("test/knee", self.root / "elsewhere"), [])
+        with mock.patch.dict(os.environ, GEOPRIOR_RUNS=""):
+            with self.assertRaisesRegex(RunError, "^results/runs: has no finished run of 'test/none'"):
+                newest_run("test/none")
 
     def test_that_is_not_there_is_named(self):
         with self.assertRaisesRegex(RunError, f"^{self.root}: has no finished run of 'test/elbow'"):
@@ -206,6 +236,26 @@ class Recipes(Scratch):
         code, out, _ = run_recipe("front", self.run, "volume_change.min", "--target", 0)
         self.assertIn("dominated by dual-quaternion", out.splitlines()[1], "slower, and twice as far from 0")
 
+    def make_fail(self, folder, name):
+        with signed(folder, "a") as file:
+            file[f"cases/default/variants/{name}"].attrs.update(status="failed", error="does not converge")
+
+    def test_front_leaves_out_what_failed(self):
+        self.make_fail(self.run, "dual-quaternion")
+        code, out, err = run_recipe("front", self.run, "volume_change.min", "--target", 0)
+        self.assertEqual((code, err), (0, "left out: dual-quaternion is failed\n"))
+        self.assertRegex(out, r"^implicit .*front\n$")
+
+    def test_significance_has_no_pair_of_what_failed(self):
+        with signed(self.run, "a") as file:
+            for seed in (2, 3):
+                file.copy("cases/default", f"cases/seed={seed}")
+                file[f"cases/seed={seed}"].attrs["index"] = seed
+        arguments = "significance", self.run, "overlap_excess.max", "implicit", "dual-quaternion"
+        self.assertEqual(run_recipe(*arguments)[0], 0)
+        self.make_fail(self.run, "implicit")
+        self.require_refused(f"{self.run}: 2 cases that differ by their seed alone", *arguments)
+
     def test_front_refuses_what_has_no_better(self):
         self.require_refused("has direction closer_to_target", "front", self.run, "volume_change.min")
         self.require_refused("no variant of the case has a time and 'nothing'", "front", self.run, "nothing")
@@ -225,6 +275,18 @@ class Recipes(Scratch):
                          (0, [["a" * 12, "2e-09", "m^3"], ["b" * 12 + "+", "2e-09", "m^3"]]))
         self.assertRegex(err, f"^left out: .*{STAMPS[2]}/run.h5: is damaged")
         self.assertEqual((self.root / "trend.png").read_bytes()[1:4], b"PNG")
+
+    def test_trend_is_of_geoprior_runs_and_leaves_out_what_failed(self):
+        for stamp in STAMPS[:2]:
+            self.make(self.root / "test/knee" / stamp)
+        self.make_fail(self.root / "test/knee" / STAMPS[0], "implicit")
+        arguments = "trend", "test/knee", "overlap_excess.max", "implicit"
+        with mock.patch.dict(os.environ, GEOPRIOR_RUNS=str(self.root)):
+            code, out, err = run_recipe(*arguments, "--quick")
+            self.assertEqual((code, out.count("\n")), (0, 1))
+            self.assertRegex(err, f"^left out: .*{STAMPS[0]}: implicit is failed\n$")
+            self.require_refused(f"^{self.root}: no full run of 'test/knee' has it", *arguments)
+            self.require_refused("^elsewhere: no full run", *arguments, "--root", "elsewhere")
 
     def test_trend_refuses_what_has_no_run(self):
         self.require_refused("no full run of 'test/elbow' has it", "trend", "test/elbow", "overlap_excess.max",

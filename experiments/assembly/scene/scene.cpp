@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "experiments/assembly/scene/given.h"
 #include "experiments/assembly/scene/inputs.h"
 #include "models/assembly/exchange/embedding.h"
 #include "models/assembly/graph/labels.h"
@@ -98,6 +99,8 @@ std::map<std::string, double> AssemblyScene::facts() const {
   out["connections"] = connections;
   return out;
 }
+
+Frame AssemblyScene::given() const { return given_frame(input); }
 
 std::shared_ptr<AssemblyScene> load_assembly_scene(const AssemblySceneOptions& options,
                                                    const fs::path& folder, std::uint64_t seed) {

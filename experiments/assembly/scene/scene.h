@@ -22,6 +22,8 @@ class AssemblyScene final : public ProcessScene {
   }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// As `given_frame` (given.h) says.
+  [[nodiscard]] Frame given() const override;
   /// Variations of a generation are found together.
   [[nodiscard]] bool frames_share_work() const override { return input.survey.has_value(); }
 };

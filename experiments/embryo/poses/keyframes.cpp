@@ -19,15 +19,6 @@ std::vector<DayState> healthy_middles(const EmbryoScene& scene) {
   return middles;
 }
 
-/// What the processes make that a disease names itself.
-std::vector<bool> named_structures(const EmbryoScene& scene) {
-  std::vector<bool> named(scene.ontology.structures.size(), false);
-  if (!scene.disease) return named;
-  for (const int process : scene.ontology.diseases[*scene.disease].disables)
-    for (const int structure : scene.ontology.processes[process].produces) named[structure] = true;
-  return named;
-}
-
 Shape between(const Shape& a, const Shape& b, double u) {
   Shape out = a;
   out.center += u * (b.center - a.center);
@@ -49,7 +40,7 @@ class KeyframesMethod final : public PoseMethod {
       : scene_(scene),
         middles_(healthy_middles(scene)),
         keyframes_(middles_, scene.ontology.stages),
-        hidden_(named_structures(scene)) {}
+        hidden_(scene.named_structures()) {}
 
   void solve(double parameter, RunContext& context) override {
     const Phase phase(context, "mesh");

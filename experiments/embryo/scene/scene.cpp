@@ -125,6 +125,14 @@ void choose_days(EmbryoScene& scene) {
 
 }  // namespace
 
+std::vector<bool> EmbryoScene::named_structures() const {
+  std::vector<bool> named(ontology.structures.size(), false);
+  if (!disease) return named;
+  for (const int process : ontology.diseases[*disease].disables)
+    for (const int structure : ontology.processes[process].produces) named[structure] = true;
+  return named;
+}
+
 std::map<std::string, double> EmbryoScene::facts() const {
   return {{"triples", static_cast<double>(graph.triples().size())},
           {"saturated_triples", static_cast<double>(saturated.triples().size())},

@@ -10,7 +10,6 @@
 #include "core/random.h"
 #include "experiments/grammar/maps/cage.h"
 #include "experiments/grammar/maps/lattice.h"
-#include "models/grammar/maps/strokes.h"
 
 namespace geoprior::grammar {
 namespace {
@@ -27,10 +26,14 @@ constexpr double kArrowHead = 0.12;
 /// Distance from the tool, in radii, of the arrows that show a twist or an inflation.
 constexpr double kShownAt = 0.4;
 
-/// What is no cage, its map refuses.
-void require_valid_gesture(const Gesture& gesture) {
+void require_valid_strokes(const Gesture& gesture) {
   for (std::size_t i = 0; i < gesture.strokes.size(); ++i)
     require_valid(gesture.strokes[i], "strokes[" + std::to_string(i) + "]");
+}
+
+/// What is no cage, its map refuses.
+void require_valid_gesture(const Gesture& gesture) {
+  require_valid_strokes(gesture);
   if (gesture.lattice) require_valid(*gesture.lattice, "gesture");
   if (gesture.cage) CageMap(*gesture.cage, 1);
 }
@@ -148,8 +151,8 @@ void draw_cage(const Cage& cage, DrawnGesture& out) {
 
 }  // namespace
 
-std::shared_ptr<const SpatialMap> map_of(const Gesture& gesture, double fraction) {
-  require_valid_gesture(gesture);
+std::vector<Dab> dabs_of(const Gesture& gesture, double fraction) {
+  require_valid_strokes(gesture);
   if (!(fraction >= 0 && fraction <= 1))
     throw Error("is asked for a fraction of " + std::to_string(fraction), "gesture", "0 to 1");
   std::vector<Dab> dabs;
@@ -157,6 +160,12 @@ std::shared_ptr<const SpatialMap> map_of(const Gesture& gesture, double fraction
   for (std::size_t i = 0; i < gesture.strokes.size(); ++i)
     append_dabs(gesture.strokes[i],
                 std::clamp(fraction * strokes - static_cast<double>(i), 0.0, 1.0), dabs);
+  return dabs;
+}
+
+std::shared_ptr<const SpatialMap> map_of(const Gesture& gesture, double fraction) {
+  require_valid_gesture(gesture);
+  std::vector<Dab> dabs = dabs_of(gesture, fraction);
   std::shared_ptr<const SpatialMap> map;
   const auto then = [&](std::shared_ptr<const SpatialMap> next) {
     map = map ? std::make_shared<ComposedMap>(map, std::move(next)) : std::move(next);

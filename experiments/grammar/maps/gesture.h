@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/grammar/maps/spatial_map.h"
+#include "models/grammar/maps/strokes.h"
 #include "models/grammar/maps/tools.h"
 
 namespace geoprior::grammar {
@@ -17,6 +18,10 @@ namespace geoprior::grammar {
 /// @throws Error  naming the stroke: no path, a radius that is not positive, a number that is not
 ///                finite; a lattice whose counts differ; a cage that is not closed
 std::shared_ptr<const SpatialMap> map_of(const Gesture& gesture, double fraction);
+
+/// The dabs of the strokes, in order, when a fraction of the gesture is done: its map but for its
+/// lattice and its cage. @throws Error  as `map_of`, of the strokes
+std::vector<Dab> dabs_of(const Gesture& gesture, double fraction);
 
 /// Lines that show the gesture: the paths of the tools, each with a circle where its effect is
 /// half of that in its middle.

@@ -3,6 +3,8 @@
 #include <set>
 #include <utility>
 
+#include "experiments/grammar/scene/scene.h"
+
 namespace geoprior::grammar {
 
 AskedPlaces::AskedPlaces(const Hierarchy& rest, std::span<const Edit> edits,
@@ -46,6 +48,14 @@ std::vector<Eigen::Vector3d> AskedPlaces::keys(int element) const {
   if (!map_ || !before_map().is_below(element, from_)) return out;
   for (Eigen::Vector3d& x : out) x = map_->at(x);
   return out;
+}
+
+AskedPlaces asked_at(const GrammarScene& scene, std::size_t step) {
+  std::vector<Edit> edits;
+  for (std::size_t i = 0; i <= step; ++i)
+    if (scene.steps.at(i).kind == Step::Kind::edit)
+      edits.push_back(scene.edits.at(scene.steps[i].number).wish);
+  return {scene.rest, edits, scene.asked_map(step), scene.gesture_element};
 }
 
 std::vector<int> out_of_reach(const RecordedState& state, const SpatialMap& map) {

@@ -12,6 +12,8 @@
 
 namespace geoprior::grammar {
 
+class GrammarScene;
+
 /// What a user asks of an object, before anybody interprets it: edits one after the other, each of
 /// the edited element and what is below it, then a deformation of space.
 ///
@@ -46,6 +48,10 @@ class AskedPlaces {
   std::shared_ptr<const SpatialMap> map_;
   int from_;
 };
+
+/// What the user of a scene has asked for by the end of a step.
+/// @param scene  outlives the places
+AskedPlaces asked_at(const GrammarScene& scene, std::size_t step);
 
 /// How far from a deformation something is that has nothing to do with it, over the diagonal of the
 /// object: neighbours of what is moved may have to make room.

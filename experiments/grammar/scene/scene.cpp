@@ -176,6 +176,13 @@ std::shared_ptr<const SpatialMap> GrammarScene::asked_since(std::size_t step) co
                                        map_of(gesture, s.fraction));
 }
 
+std::vector<Dab> GrammarScene::asked_dabs(std::size_t step) const {
+  const Step& s = steps.at(step);
+  if (s.kind == Step::Kind::gesture) return dabs_of(gesture, s.fraction);
+  if (s.kind == Step::Kind::random) return dabs_of(random_gesture(random_seed, s.number, box), 1);
+  return {};
+}
+
 DrawnGesture GrammarScene::drawn_gesture(std::size_t step) const {
   const Step& s = steps.at(step);
   if (s.kind == Step::Kind::gesture) return drawn(gesture);

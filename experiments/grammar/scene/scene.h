@@ -55,6 +55,8 @@ class GrammarScene final : public ProcessScene {
   [[nodiscard]] std::shared_ptr<const SpatialMap> asked_map(std::size_t step) const;
   /// From the step before to this one.
   [[nodiscard]] std::shared_ptr<const SpatialMap> asked_since(std::size_t step) const;
+  /// The dabs of a step's strokes: `asked_map` but for a lattice and a cage. None of edits.
+  [[nodiscard]] std::vector<Dab> asked_dabs(std::size_t step) const;
   /// Strokes of a step, to be drawn.
   [[nodiscard]] DrawnGesture drawn_gesture(std::size_t step) const;
   /// Elements that are tagged when the step begins.
@@ -63,6 +65,17 @@ class GrammarScene final : public ProcessScene {
   [[nodiscard]] std::string parameter_name() const override { return "step"; }
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// The object and what is asked of it as a program from outside is given them.
+  ///
+  /// Parts: the object at rest as frames have it (models/grammar/record.h), `type` with the names
+  /// of the types; `asked_0000` …: for each frame the key points of the rest where the user asks
+  /// them to be (points; `element`, `key`). Tables: `type_0000` … a row an element at rest of that
+  /// type, its number and its parameters by name; `ranges` (type, parameter, least and largest
+  /// value); `steps` (frame, kind, element that is deformed or edited, fraction of the gesture;
+  /// codes of Step); `edits` (a row an edit; codes of DeltaKind and Tag::Follow, -1: it may be
+  /// undone); `dabs` (in the order in which they move a point in that frame: Dab). A lattice and a
+  /// cage are in none of the dabs: `asked_0000` … know them, and the input files have them.
+  [[nodiscard]] Frame given() const override;
 };
 
 /// @throws Error  naming the key or file

@@ -1,9 +1,13 @@
 #include "experiments/sound/scene/scene.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/error.h"
 #include "experiments/paper/scene/make_sheet.h"
 #include "experiments/sound/scene/bank_files.h"
 #include "models/paper/sheet/valid.h"
+#include "testbed/given_tables.h"
 #include "testbed/home.h"
 
 namespace geoprior::sound {
@@ -30,6 +34,41 @@ Sheet make_sheet(const SoundSceneOptions& options, const Pattern& pattern, std::
   return sheet;
 }
 
+bool is_same(const ShellMesh& a, const ShellMesh& b) {
+  return a.pattern.rows() == b.pattern.rows() && a.triangles.rows() == b.triangles.rows() &&
+         a.pattern == b.pattern && a.triangles == b.triangles;
+}
+
+/// Of each vertex the first handle whose shape covers it; -1: none.
+NamedArray handles_of(const Sheet& sheet, const Eigen::MatrixX2d& pattern) {
+  NamedArray handle{"handle", "1", NamedArray::On::points,
+                    Eigen::MatrixXd::Constant(pattern.rows(), 1, -1)};
+  for (Eigen::Index v = 0; v < pattern.rows(); ++v) {
+    const Eigen::Vector2d p = pattern.row(v);
+    const auto first = std::find_if(sheet.handles.begin(), sheet.handles.end(),
+                                    [&](const Handle& h) { return h.covers(p); });
+    if (first != sheet.handles.end())
+      handle.values(v, 0) = static_cast<double>(first - sheet.handles.begin());
+  }
+  return handle;
+}
+
+/// The sheet of a frame, with its mesh or with places alone.
+Part given_sheet(const Sheet& sheet, const SheetSnapshot& now, bool with_mesh) {
+  using On = NamedArray::On;
+  Part part;
+  part.points = now.x;
+  if (now.v.rows() > 0) part.arrays.push_back({"velocity", "m/s", On::points, now.v});
+  if (!with_mesh) {
+    part.kind = Part::Kind::points;
+    return part;
+  }
+  part.triangles = now.mesh.triangles;
+  part.arrays.push_back({"pattern", "m", On::points, now.mesh.pattern});
+  part.arrays.push_back(handles_of(sheet, now.mesh.pattern));
+  return part;
+}
+
 }  // namespace
 
 std::map<std::string, double> SoundScene::facts() const {
@@ -39,6 +78,34 @@ std::map<std::string, double> SoundScene::facts() const {
           {"obstacles", static_cast<double>(sheet.obstacles.size())},
           {"frames", static_cast<double>(animation->frame_count())},
           {"bending_stiffness", sheet.material.bending_stiffness()}};
+}
+
+Frame SoundScene::given() const {
+  Frame given;
+  std::vector<double> times;
+  TableBuilder tears({"tear", "time [s]", "u [m]", "v [m]", "x [m]", "y [m]", "z [m]"});
+  ShellMesh mesh;
+  Eigen::Index vertices = 0;
+  for (int i = 0; i < animation->frame_count(); ++i) {
+    const SheetSnapshot now = animation->snapshot(i);
+    for (const TornPlace& place : now.torn) {
+      if (i > 0 && place.time <= times.back()) continue;
+      const auto& [tear, time, at, x] = place;
+      tears.add({static_cast<double>(tear), time, at.x(), at.y(), x.x(), x.y(), x.z()});
+    }
+    times.push_back(now.time);
+    vertices += now.x.rows();
+    if (vertices > kMostGiven) {
+      given.parts.clear();
+      continue;
+    }
+    const bool is_new = i == 0 || !is_same(mesh, now.mesh);
+    given.parts[numbered("sheet", i)] = given_sheet(sheet, now, is_new);
+    mesh = now.mesh;
+  }
+  given.tables["frames"] = frame_times(times);
+  given.tables["tears"] = tears.finished();
+  return given;
 }
 
 std::shared_ptr<const SheetAnimation> SoundScene::named(const std::string& name) const {

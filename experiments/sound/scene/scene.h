@@ -26,6 +26,11 @@ class SoundScene final : public ProcessScene {
   [[nodiscard]] std::shared_ptr<const SheetAnimation> named(const std::string& name) const;
 
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// The scene's animation, frame by frame: "sheet_0000" … with triangles where the mesh is another
+  /// one than in the frame before, without where it is that; table "tears", a row a place that a
+  /// tip comes to. No sheets when all frames have more than `kMostGiven` vertices.
+  [[nodiscard]] Frame given() const override;
+  static constexpr Eigen::Index kMostGiven = 2'000'000;  ///< some 100 bytes of files each
 };
 
 /// Opens the animation and reads the bank.

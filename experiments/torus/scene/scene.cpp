@@ -1,9 +1,13 @@
 #include "experiments/torus/scene/scene.h"
 
+#include <set>
+#include <utility>
+
 #include "core/error.h"
 #include "core/random.h"
 #include "models/torus/frames.h"
 #include "solvers/torus/exact/numbers.h"
+#include "testbed/given_tables.h"
 
 namespace geoprior::torus {
 namespace {
@@ -42,6 +46,26 @@ std::map<std::string, double> TorusScene::facts() const {
   for (std::size_t i = 0; i < input.corrugations.size(); ++i)
     facts["N_" + std::to_string(i + 1)] = input.corrugations[i].number;
   return facts;
+}
+
+Frame TorusScene::given() const {
+  // "grid" is for a file alone; the others are at the places of "windows".
+  const std::set<std::string> left_out{"grid", "windows_before", "windows_base"};
+  Frame given;
+  for (int number = 0; number <= last_parameter(); ++number) {
+    Frame asked = asked_frame(input, number);
+    for (auto& [name, part] : asked.parts) {
+      if (left_out.contains(name)) continue;
+      const bool once = part.kind == Part::Kind::triangles && !input.sampling.zooms;
+      if (once && number > 0) continue;
+      given.parts[once ? name : numbered(name, number)] = std::move(part);
+    }
+    for (auto& [name, table] : asked.tables) {
+      // Those of the last frame are all.
+      given.tables[name == "corrugations" ? name : numbered(name, number)] = std::move(table);
+    }
+  }
+  return given;
 }
 
 std::vector<Artifact> TorusScene::files_of(Frame& frame) const {

@@ -24,6 +24,9 @@ class TorusScene final : public ProcessScene {
   [[nodiscard]] std::string parameter_name() const override;
   [[nodiscard]] std::string parameter_unit() const override { return "1"; }
   [[nodiscard]] std::map<std::string, double> facts() const override;
+  /// What frames ask for, on the torus of revolution: "surface" and "detail" once, unless frames
+  /// are views; else the parts and tables of frames, followed by the number of theirs.
+  [[nodiscard]] Frame given() const override;
   [[nodiscard]] std::vector<Artifact> files_of(Frame& frame) const override;
   [[nodiscard]] bool frames_share_work() const override { return false; }
 };

@@ -22,7 +22,8 @@ std::vector<Finding> folder_findings();
 /// display without OpenGL ends the process that asks it.
 std::vector<Finding> picture_findings();
 
-/// The modules of the Python that plots and reports are made with.
+/// The modules of the Python that plots and reports are made with, and of the `python3` in PATH,
+/// which may be another: that one starts methods from outside.
 std::vector<Finding> python_findings();
 
 /// Programs that are called, or that open what is exported, and what is loaded when it is needed.

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "testbed/commands/doctor/findings.h"
+#include "testbed/formats/folders.h"
 #include "testbed/home.h"
 #include "testbed/runner/run_folder.h"
 
@@ -60,15 +61,8 @@ Finding other_models(const fs::path& data) {
           kGetModels};
 }
 
-/// The folder itself, or the nearest one above it that is there.
-fs::path nearest_folder(fs::path folder) {
-  std::error_code ignored;
-  while (!fs::is_directory(folder, ignored) && folder != folder.parent_path()) {
-    folder = folder.parent_path();
-  }
-  return folder;
-}
-
+/// Makes a folder there, which goes again with all that was made for it: what permissions say is
+/// not what a file system does.
 Finding runs_finding() {
   Finding runs{.what = "folder of runs",
                .required = true,
@@ -76,9 +70,9 @@ Finding runs_finding() {
                .get = "set GEOPRIOR_RUNS to a folder that you may write"};
   try {
     const fs::path folder = fs::absolute(runs_root());
-    const fs::path there = nearest_folder(folder);
-    runs.found = ::access(there.c_str(), W_OK | X_OK) == 0;
-    runs.where = folder.string() + (runs.found ? "" : ": no permission in " + there.string());
+    runs.where = folder.string();
+    const MadeFolders tried(folder / (".doctor-" + std::to_string(::getpid())));
+    runs.found = true;
   } catch (const Error& error) {
     runs.where = error.what();
   }

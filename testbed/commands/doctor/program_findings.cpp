@@ -46,7 +46,9 @@ Finding image_module_finding() {
 std::vector<Finding> program_findings() {
   return {image_module_finding(),
           optional_program("ffmpeg", "-version", "`video` as one file; without it pictures"),
-          optional_program("blender", "--version", "opening what `export --format glb` writes")};
+          optional_program("blender", "--version",
+                           "opening what `export --format glb` writes; examples/external/blender "
+                           "makes its frames anew with it")};
 }
 
 }  // namespace geoprior

@@ -43,24 +43,51 @@ std::vector<std::string> all_flags(const CommandTree& command) {
   return flags;
 }
 
+std::vector<std::string> flags_with_values(const CommandTree& command) {
+  std::vector<std::string> flags;
+  for (const CommandWord& option : command.options) {
+    if (option.takes_value()) flags.insert(flags.end(), option.flags.begin(), option.flags.end());
+  }
+  return flags;
+}
+
 std::string first_line_of_script(const std::string& shell) {
   return "# Made by: geoprior completion " + shell + "\n";
 }
 
 // ---------------------------------------------------------------------------------------- bash
 
+// Names of files are quoted by bash, and a folder is gone on into, where it is told that they are
+// names of files; an identifier is written like one.
 constexpr const char* kBashHelpers = R"(
 _geoprior_offer() {
   local current=$1 offer=$2
   case $offer in
-    experiments) mapfile -t COMPREPLY < <(compgen -W "$_geoprior_experiments" -- "$current"; compgen -f -X '!*.toml' -- "$current"; compgen -d -S / -- "$current") ;;
+    experiments | runs | files | folders) compopt -o filenames 2>/dev/null ;;
+  esac
+  case $offer in
+    experiments) mapfile -t COMPREPLY < <(compgen -W "$_geoprior_experiments" -- "$current"; compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current") ;;
     runs) mapfile -t COMPREPLY < <(compgen -W "$_geoprior_experiments" -- "$current"; compgen -f -- "$current") ;;
     names) mapfile -t COMPREPLY < <(compgen -W "$_geoprior_names" -- "$current") ;;
-    files) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
-    folders) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
+    files) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
+    folders) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     nothing) COMPREPLY=() ;;
     *) mapfile -t COMPREPLY < <(compgen -W "${offer#choices }" -- "$current") ;;
   esac
+}
+
+# How many arguments stand before the word that is completed: neither options nor their values, of those in $1.
+_geoprior_place() {
+  local i
+  place=0
+  for ((i = 2; i < COMP_CWORD; i++)); do
+    if [[ " $1 " == *" ${COMP_WORDS[i]} "* ]]; then
+      [[ ${COMP_WORDS[i + 1]} == = ]] && i=$((i + 1))
+      i=$((i + 1))
+    elif [[ ${COMP_WORDS[i]} != -* ]]; then
+      place=$((place + 1))
+    fi
+  done
 }
 
 _geoprior() {
@@ -106,11 +133,21 @@ std::string bash_values(const CommandTree& command) {
   return text;
 }
 
+/// What may stand at each place: of the last argument also behind it, where it takes several.
+std::string bash_arguments(const CommandTree& command) {
+  std::string text;
+  for (const CommandWord& argument : command.arguments) {
+    text += (text.empty() ? "" : " ") + shell_quoted(bash_offer(argument));
+  }
+  const bool has_no_end = !command.arguments.empty() && command.arguments.back().repeated;
+  return "(" + text +
+         ") more=" + shell_quoted(has_no_end ? bash_offer(command.arguments.back()) : "nothing");
+}
+
 std::string bash_words(const CommandTree& command) {
-  const std::string offer =
-      command.arguments.empty() ? "nothing" : bash_offer(command.arguments.front());
   return "    " + command.name + ") options=" + shell_quoted(joined_by(all_flags(command), " ")) +
-         " argument=" + shell_quoted(offer) + " ;;\n";
+         " valued=" + shell_quoted(joined_by(flags_with_values(command), " ")) +
+         " arguments=" + bash_arguments(command) + " ;;\n";
 }
 
 // ----------------------------------------------------------------------------------------- zsh
@@ -138,13 +175,20 @@ std::string zsh_action(const CommandWord& word) {
   return " ";
 }
 
+/// A flag of a value, which may follow it in the same word: --format=ply, -fply.
+std::string zsh_flag(const std::string& flag) {
+  return flag + (flag.starts_with("--") ? "=" : "+");
+}
+
 std::string zsh_option(const CommandWord& option) {
   std::string rest = "[" + zsh_text(option.description) + "]";
   if (option.takes_value()) rest += ":" + zsh_text(option.value) + ":" + zsh_action(option);
+  std::vector<std::string> flags = option.flags;
+  if (option.takes_value()) std::transform(flags.begin(), flags.end(), flags.begin(), zsh_flag);
   const std::string often = option.repeated ? "*" : "";
-  if (option.flags.size() == 1) return shell_quoted(often + option.flags.front() + rest);
+  if (flags.size() == 1) return shell_quoted(often + flags.front() + rest);
   const std::string others = option.repeated ? "*" : "(" + joined_by(option.flags, " ") + ")";
-  return shell_quoted(others) + "{" + joined_by(option.flags, ",") + "}" + shell_quoted(rest);
+  return shell_quoted(others) + "{" + joined_by(flags, ",") + "}" + shell_quoted(rest);
 }
 
 std::string zsh_argument(const CommandWord& argument, std::size_t place) {
@@ -207,15 +251,42 @@ std::string fish_option(const CommandWord& option) {
   return text + " -d " + fish_quoted(option.description);
 }
 
+constexpr const char* kFishPlace = R"(
+# How many arguments stand before the word that is completed: neither options nor their values, of those in $argv.
+function __geoprior_place
+  set -l place 0
+  set -l is_value no
+  for word in (commandline -opc)[3..-1]
+    if test $is_value = yes
+      set is_value no
+    else if contains -- $word $argv
+      set is_value yes
+    else if not string match -q -- '-*' $word
+      set place (math $place + 1)
+    end
+  end
+  echo $place
+end
+)";
+
 std::string fish_list(const std::string& function, const std::vector<std::string>& words) {
   return "\nfunction " + function + "\n  printf '%s\\n' " + joined_by(words, " ") + "\nend\n";
 }
 
+/// Arguments are offered at their places only; the last one also behind, where it takes several.
 std::string fish_command(const CommandTree& command) {
-  const std::string begin = "complete -c geoprior -n '__geoprior_command " + command.name + "'";
+  const std::string of_command =
+      "complete -c geoprior -n '__geoprior_command " + command.name + "'";
   std::string text;
-  for (const CommandWord& option : command.options) text += begin + fish_option(option) + "\n";
-  if (!command.arguments.empty()) text += begin + fish_action(command.arguments.front()) + "\n";
+  for (const CommandWord& option : command.options) text += of_command + fish_option(option) + "\n";
+  const std::string valued = joined_by(flags_with_values(command), " ");
+  for (std::size_t i = 0; i < command.arguments.size(); ++i) {
+    const CommandWord& argument = command.arguments[i];
+    text += "complete -c geoprior -n '__geoprior_command " + command.name +
+            "; and test (__geoprior_place " + valued + ") " +
+            (argument.repeated ? "-ge " : "-eq ") + std::to_string(i) + "'" +
+            fish_action(argument) + "\n";
+  }
   return text;
 }
 
@@ -245,11 +316,13 @@ std::string bash_completion(const CommandTree& program, const OfferedNames& name
                        joined_by(all_flags(program), " ")) +
           "\n    return\n  fi\n  case $command:$previous in\n";
   for (const CommandTree& command : program.commands) text += bash_values(command);
-  text += "  esac\n  local options='' argument=nothing\n  case $command in\n";
+  text +=
+      "  esac\n  local options='' valued='' arguments=() more=nothing place\n  case $command in\n";
   for (const CommandTree& command : program.commands) text += bash_words(command);
   text +=
       "  esac\n  if [[ $current == -* ]]; then\n    _geoprior_offer \"$current\" "
-      "\"choices $options\"\n  else\n    _geoprior_offer \"$current\" \"$argument\"\n  fi\n}\n\n"
+      "\"choices $options\"\n  else\n    _geoprior_place \"$valued\"\n"
+      "    _geoprior_offer \"$current\" \"${arguments[place]:-$more}\"\n  fi\n}\n\n"
       "complete -F _geoprior geoprior\n";
   return text;
 }
@@ -292,10 +365,11 @@ std::string fish_completion(const CommandTree& program, const OfferedNames& name
   std::string text = first_line_of_script("fish");
   text += fish_list("__geoprior_experiments", names.experiments);
   text += fish_list("__geoprior_names", names.described);
+  text += kFishPlace;
   text +=
       "\nfunction __geoprior_command\n  set -l words (commandline -opc)\n"
-      "  test (count $words) -ge 2; and test $words[2] = $argv[1]\nend\n\n"
-      "function __geoprior_no_command\n  test (count (commandline -opc)) -eq 1\nend\n\n"
+      "  test (count $words) -ge 2; and test $words[2] = $argv[1]\nend\n"
+      "\nfunction __geoprior_no_command\n  test (count (commandline -opc)) -eq 1\nend\n\n"
       "complete -c geoprior -f\n";
   const std::string begin = "complete -c geoprior -n __geoprior_no_command";
   for (const CommandWord& option : program.options) text += begin + fish_option(option) + "\n";

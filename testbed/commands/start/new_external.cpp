@@ -3,116 +3,48 @@
 #include <toml++/toml.h>
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/error.h"
 #include "testbed/commands/console.h"
 #include "testbed/commands/find.h"
+#include "testbed/commands/message_line.h"
+#include "testbed/commands/start/starters.h"
 #include "testbed/external/method.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/formats/folders.h"
 #include "testbed/joined.h"
 #include "testbed/runner/spec/spec.h"
+#include "testbed/shell_word.h"
 
 namespace geoprior {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Experiments whose small scene a topic begins with, and the variant that stands beside.
-const std::map<std::string, std::string>& beginnings() {
-  static const std::map<std::string, std::string> of_topic{{"assembly", "assembly/substructures"},
-                                                           {"details", "details/options-motion"},
-                                                           {"embryo", "embryo/cloaca"},
-                                                           {"fluid", "fluid/options-extract"},
-                                                           {"grammar", "grammar/imported"},
-                                                           {"paper", "paper/options-scene"},
-                                                           {"sketch", "sketch/options-flat"},
-                                                           {"skinning", "skinning/cylinder-bend"},
-                                                           {"sound", "sound/options"},
-                                                           {"torus", "torus/zoom"}};
-  return of_topic;
-}
-
 constexpr const char* kProgramName = "my_method.py";
 
-constexpr const char* kProgram = R"PY(#!/usr/bin/env python3
-"""A method of your own. Edit `move`; scene.json says what the scene is, reference/ has the frames of the variant beside.
-
-It is started in a folder of the run, and leaves its frames in out/ (docs/external-methods.md).
-"""
-import base64
-import json
-import re
-import shutil
-import struct
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-SCENE = json.loads(Path("scene.json").read_text())
-
-
-def move(part: str, parameter: float, points: np.ndarray) -> np.ndarray:
-    """Where the points (n x 3, metres) of a part of the frame at this parameter go."""
-    return points
-
-
-def moved(text: str, part: str) -> str:
-    """The text of a .vtp with other points."""
-    found = re.search(r"<Points>.*?<DataArray[^>]*>\s*(.*?)\s*<(?:InformationKey|/DataArray)", text, re.DOTALL)
-    time = re.search(r'Name="TimeValue"[^>]*>\s*(.*?)\s*</DataArray', text, re.DOTALL)
-    if not found or not found[1]:
-        return text
-    points = numbers(found[1]).reshape(-1, 3)
-    if not len(points):
-        return text
-    points = np.ascontiguousarray(move(part, numbers(time[1])[0], points), dtype="<f8").tobytes()
-    packed = zlib.compress(points)
-    head = struct.pack("<4I", 1, len(points), 0, len(packed))
-    coded = (base64.b64encode(head) + base64.b64encode(packed)).decode()
-    return text[: found.start(1)] + coded + text[found.end(1) :]
-
-
-def numbers(text: str) -> np.ndarray:
-    """The doubles of a binary array: base64 of a head, then of blocks of zlib."""
-    blocks = struct.unpack("<I", base64.b64decode(text[:8])[:4])[0]
-    size = 4 * (3 + blocks)
-    coded = 4 * -(-size // 3)
-    head = struct.unpack(f"<{3 + blocks}I", base64.b64decode(text[:coded])[:size])
-    data, at, bytes_ = base64.b64decode(text[coded:]), 0, b""
-    for length in head[3:]:
-        bytes_ += zlib.decompress(data[at : at + length])
-        at += length
-    return np.frombuffer(bytes_, "<f8")
-
-
-def main() -> None:
-    reference, out = Path(SCENE["reference"]["folder"]), Path(SCENE["frames"]["folder"])
-    shutil.copytree(reference, out, dirs_exist_ok=True)
-    for file in sorted((out / "frames").glob("*.vtp")):
-        file.write_text(moved(file.read_text(), file.stem.rsplit("_", 1)[0]))
-
-
-if __name__ == "__main__":
-    main()
-)PY";
-
-std::string readme(const std::string& topic, const std::string& base) {
-  return "# A method of your own beside those of `" + topic +
+std::string readme(const Starter& starter) {
+  const std::string picture = starter.changes == StarterChanges::sound
+                                  ? "`spectrogram.png` and `figure.png`"
+                                  : "`figure.png`";
+  return "# A method of your own beside those of `" + starter.topic +
          "`\n\n"
          "    geoprior run experiment.toml --allow-commands\n\n"
-         "starts `my_method.py` for each case, measures its frames as it measures all, and draws "
-         "them beside\n`" +
-         base +
-         "`. Edit the function `move` of the program; as it stands it returns what the variant "
-         "beside makes,\nso that every number is equal. `--allow-commands` is there because an "
-         "experiment file can start any program:\nread files of others before you give it.\n\n"
-         "`geoprior compare` sets two runs beside each other; `docs/external-methods.md` says what "
-         "is in `scene.json`,\nhow frames are written, and what happens to a program that fails.\n";
+         "starts `my_method.py` for each case, measures what it leaves as it measures all, and "
+         "draws it beside\n`" +
+         starter.beside + "` (" + picture + "). Edit the function `" + starter_function(starter) +
+         "` of the program: as it stands it returns\nwhat the variant beside makes, so that every "
+         "number is equal. It needs NumPy in the `python3` that is first\nin PATH (`geoprior "
+         "doctor` looks). `--allow-commands` is there because an experiment file can start any\n"
+         "program: read files of others before you give it.\n\n"
+         "`geoprior compare RUN RUN --variants " +
+         starter.beside +
+         "=mine` says which numbers of a run are worse or better than those of\nthe variant "
+         "beside; "
+         "`docs/external-methods.md` what is in `scene.json`, how frames are written, and what\n"
+         "happens to a program that fails.\n";
 }
 
 /// Names of files beside the experiment that they come from become those of the files.
@@ -130,36 +62,46 @@ void name_files(toml::node& node, const fs::path& folder) {
   }
 }
 
-toml::table variant(const toml::table& first) {
-  toml::table base = first;
-  base.insert_or_assign("role", "baseline");
-  base.erase("reference");
-  base.erase("quick");
-  return base;
+toml::table variant_beside(const toml::table& all, const std::string& name) {
+  for (const toml::node& node : *all["variant"].as_array()) {
+    toml::table variant = *node.as_table();
+    if (variant["name"].value_or(std::string()) != name) continue;
+    variant.insert_or_assign("role", "baseline");
+    variant.erase("reference");
+    variant.erase("quick");
+    return variant;
+  }
+  throw Error("has no variant '" + name + "'", "new external");
 }
 
-/// The small version of an experiment with its first variant and the external one.
-toml::table beginning_of(const std::string& id, const std::vector<Topic>& topics,
-                         std::string& base_name) {
+/// The small version of the starter's experiment, with one of its variants and the external one.
+toml::table experiment_of(const Starter& starter, const std::vector<Topic>& topics) {
   LoadRequest load;
   load.quick = true;
-  const Experiment from = load_experiment(experiment_file(id), topics, load);
+  load.sets = starter.sets;
+  const Experiment from = load_experiment(experiment_file(starter.experiment), topics, load);
   toml::table all = toml::parse(from.resolved_toml);
   name_files(*all.get("scene"), from.file.parent_path());
-  const toml::table base = variant(*all["variant"].as_array()->front().as_table());
-  base_name = base["name"].value_or(std::string());
   toml::table mine;
   mine.insert("name", "mine");
   mine.insert("method", kExternalMethod);
-  mine.insert("reference", base_name);
+  mine.insert("reference", starter.beside);
   mine.insert("options", toml::table{{"command", toml::array{"python3", kProgramName}}});
   toml::table experiment;
-  experiment.insert("title", "A method of my own beside " + base_name);
+  experiment.insert("title", "A method of my own beside " + starter.beside);
   experiment.insert("topic", from.topic);
   experiment.insert("seed", 1);
   experiment.insert("scene", *all["scene"].as_table());
-  experiment.insert("variant", toml::array{base, mine});
+  experiment.insert("variant", toml::array{variant_beside(all, starter.beside), mine});
+  experiment.insert("figure_view", toml::parse(starter.view));
   return experiment;
+}
+
+const Starter& starter_of(const std::string& topic) {
+  for (const Starter& starter : starters()) {
+    if (starter.topic == topic) return starter;
+  }
+  throw Error("unknown topic '" + topic + "'", "new external", joined(topics_of_starters()));
 }
 
 void require_new_folder(const fs::path& folder) {
@@ -173,26 +115,22 @@ void require_new_folder(const fs::path& folder) {
 }  // namespace
 
 int new_command(const CommandContext& context, const NewRequest& request) {
-  std::vector<std::string> topics;
-  for (const auto& [topic, id] : beginnings()) topics.push_back(topic);
-  const auto begin = beginnings().find(request.topic);
-  if (begin == beginnings().end()) {
-    throw Error("unknown topic '" + request.topic + "'", "new external", joined(topics));
-  }
+  const Starter& starter = starter_of(request.topic);
   const fs::path folder = request.out.empty() ? "my-" + request.topic + "-method" : request.out;
   require_new_folder(folder);
-  std::string base;
   std::ostringstream experiment;
-  experiment << "# " << begin->second << ", made small, and a method from outside.\n\n"
-             << beginning_of(begin->second, context.topics, base) << "\n";
+  experiment << "# " << starter.experiment << ", made small, and a method from outside.\n\n"
+             << experiment_of(starter, context.topics) << "\n";
   const MadeFolders made(folder);
-  write_file_atomically(folder / kProgramName, std::string_view(kProgram));
+  write_file_atomically(folder / kProgramName, std::string_view(starter_program(starter)));
   write_file_atomically(folder / "experiment.toml", std::string_view(experiment.str()));
-  write_file_atomically(folder / "README.md", std::string_view(readme(request.topic, base)));
-  say("program     " + (folder / kProgramName).string() + " (edit `move`)");
-  say("experiment  " + (folder / "experiment.toml").string());
-  say("next        geoprior run " + (folder / "experiment.toml").string() + " --allow-commands");
-  if (context.json) print_json({{"folder", folder.string()}, {"beside", base}});
+  write_file_atomically(folder / "README.md", std::string_view(readme(starter)));
+  const std::string file = (folder / "experiment.toml").string();
+  say("program     " + message_line((folder / kProgramName).string()) + " (edit `" +
+      starter_function(starter) + "`)");
+  say("experiment  " + message_line(file));
+  say("next        " + shell_line({"geoprior", "run", file, "--allow-commands"}));
+  if (context.json) print_json({{"folder", folder.string()}, {"beside", starter.beside}});
   return done;
 }
 

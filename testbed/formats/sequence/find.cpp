@@ -181,9 +181,14 @@ void require_other_part(const PvdDataSet& a, const PvdDataSet& b, const fs::path
 }  // namespace
 
 FoundFiles find_pattern(const fs::path& path) {
+  (void)parse_pattern(path);
+  require_mesh(path);
+  return find_numbered(path);
+}
+
+FoundFiles find_numbered(const fs::path& path) {
   const Pattern pattern = parse_pattern(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  require_mesh(path);
   if (!fs::is_directory(folder)) throw Error("is in no folder", path.string());
   const std::vector<std::string> names = names_in(folder);
   std::map<int, fs::path> by_number;

@@ -28,6 +28,8 @@ struct FoundFiles {
 /// @throws Error  for a pattern without or with two numbers, that nothing matches (says what is
 ///                there), or that two files match with one number
 FoundFiles find_pattern(const std::filesystem::path& pattern);
+/// The same, whatever the files are by their extension.
+FoundFiles find_numbered(const std::filesystem::path& pattern);
 /// Whether `find_pattern` would find anything.
 bool matches_any(const std::filesystem::path& pattern);
 

@@ -203,7 +203,10 @@ std::optional<double> CsvTable::number(const Row& row, std::string_view column) 
     std::replace(word.begin(), word.end(), ',', '.');
   }
   const std::optional<double> x = finite_number(word);
-  if (!x) throw Error("'" + *cell + "' is no finite number", row.place, std::string(column));
+  if (!x) {
+    throw Error("'" + *cell + "' is no finite number",
+                row.place + ": column '" + std::string(column) + "'");
+  }
   return x;
 }
 

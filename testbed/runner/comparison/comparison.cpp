@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "testbed/joined.h"
+#include "testbed/runner/benchmark.h"
 #include "testbed/runner/judgement/measure.h"
 #include "testbed/runner/judgement/timing_statistics.h"
 #include "testbed/runner/reference/gates.h"
@@ -337,10 +338,11 @@ void compare_claim_outcomes(const Sides& sides, RunComparison& result) {
                    [](const auto& a, const auto& b) { return a.change < b.change; });
 }
 
+using PairedTimes = std::pair<std::vector<double>, std::vector<double>>;
+
 /// Times of equal frame and repetition; empty where there are none.
-std::pair<std::vector<double>, std::vector<double>> paired_times(const VariantPair& pair,
-                                                                 const std::string& phase) {
-  std::pair<std::vector<double>, std::vector<double>> times;
+PairedTimes paired_times(const VariantPair& pair, const std::string& phase) {
+  PairedTimes times;
   const auto& before = pair.before->timing.at(phase);
   const auto& after = pair.after->timing.at(phase);
   for (std::size_t i = 0; i < std::min(before.size(), pair.before->frames.size()); ++i) {
@@ -356,17 +358,33 @@ std::pair<std::vector<double>, std::vector<double>> paired_times(const VariantPa
   return times;
 }
 
+/// Times of whole runs, where a program from outside has no times of frames; else empty.
+PairedTimes paired_runs(const VariantPair& pair) {
+  if (!pair.before->timing.contains(kWholeProcess) && !pair.after->timing.contains(kWholeProcess)) {
+    return {};
+  }
+  PairedTimes times{whole_runs(pair.before->timing), whole_runs(pair.after->timing)};
+  const std::size_t pairs = std::min(times.first.size(), times.second.size());
+  times.first.resize(pairs);
+  times.second.resize(pairs);
+  return times;
+}
+
 std::vector<TimeRatio> time_ratios(const std::vector<VariantPair>& pairs) {
   std::vector<TimeRatio> ratios;
   for (const VariantPair& pair : pairs) {
-    for (const char* phase : {"solve", "run"}) {
-      if (!pair.before->timing.contains(phase) || !pair.after->timing.contains(phase)) continue;
-      const auto [before, after] = paired_times(pair, phase);
-      if (before.empty()) continue;
+    const auto add = [&](const char* phase, const PairedTimes& times) {
+      const auto& [before, after] = times;
+      if (before.empty()) return;
       ratios.push_back({pair.case_before->name, pair.label, phase, median(before), median(after),
                         median_of_paired_ratios(after, before, pair.case_before->seed),
                         before.size()});
+    };
+    for (const char* phase : {"solve", "run"}) {
+      if (!pair.before->timing.contains(phase) || !pair.after->timing.contains(phase)) continue;
+      add(phase, paired_times(pair, phase));
     }
+    add("whole run", paired_runs(pair));
   }
   std::stable_sort(ratios.begin(), ratios.end(), [](const TimeRatio& a, const TimeRatio& b) {
     return a.ratio.value > b.ratio.value;
@@ -456,6 +474,7 @@ RunComparison compare_runs(const OpenedRun& before, const OpenedRun& after, cons
     require_variant(sides.after, b, "second");
   }
   result.options = differing_options(sides, request);
+  result.inputs = differing_inputs(sides.before.inputs, sides.after.inputs);
   result.one_run = std::filesystem::equivalent(before.folder(), after.folder());
   result.same_bytes =
       request.variants.empty() && sides.before.content_sha256 == sides.after.content_sha256;

@@ -62,7 +62,7 @@ struct StatusChange {
 struct TimeRatio {
   std::string case_name;
   std::string variant;
-  std::string phase;    ///< "solve" of a pose method, "run" of a process
+  std::string phase;    ///< "solve" of a pose method, "run" of a process, "whole run"
   double before_s = 0;  ///< median over frames and repetitions
   double after_s = 0;
   Interval ratio;         ///< median over the pairs; NaN bounds for one pair
@@ -81,6 +81,7 @@ struct RunComparison {
   bool one_run = false;                ///< two variants of it
   std::vector<KeyDifference> keys;     ///< of the specifications
   std::vector<KeyDifference> options;  ///< of variants that were paired by hand
+  std::vector<KeyDifference> inputs;   ///< files that both runs read, by their SHA-256
   std::vector<ValueChange> values;
   std::size_t within = 0;  ///< values that moved by no more than their tolerance
   std::vector<ClaimChange> claims;

@@ -1,7 +1,9 @@
 #include "testbed/runner/comparison/document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <tuple>
 
@@ -16,6 +18,7 @@ namespace {
 constexpr int kFewDigits = 4, kAllDigits = 17;
 constexpr double kLargeRatio = 3;  ///< from here on a factor reads better than per cent
 constexpr std::uintmax_t kMostPictureBytes = 50'000'000;
+constexpr std::size_t kHashDigits = 12;  ///< of a hash, for people
 
 using Row = DocumentTable::Row;
 
@@ -225,6 +228,37 @@ DocumentSection options_section(const RunComparison& comparison) {
   return section;
 }
 
+/// "0123456789ab, absent", of whole hashes.
+std::string short_hashes(const std::string& hashes) {
+  std::string text;
+  for (std::size_t at = 0; at < hashes.size();) {
+    const std::size_t end = std::min(hashes.find(", ", at), hashes.size());
+    text += (text.empty() ? "" : ", ") + hashes.substr(at, std::min(end - at, kHashDigits));
+    at = end + 2;
+  }
+  return text;
+}
+
+DocumentSection inputs_section(const RunComparison& comparison) {
+  DocumentSection section;
+  section.heading = "Inputs";
+  section.paragraphs.emplace_back(
+      "These files are not the same in both runs; what differs may come from them.");
+  section.table.head = {"file", "SHA-256 before", "after"};
+  for (const KeyDifference& one : comparison.inputs) {
+    section.table.rows.push_back({{one.key, short_hashes(one.before), short_hashes(one.after)}});
+  }
+  return section;
+}
+
+/// By its signature, which is all that a page needs: a browser leaves out what it cannot draw.
+bool is_png(const std::filesystem::path& file) {
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  std::array<char, kSignature.size()> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  return std::string_view(head.data(), head.size()) == kSignature;
+}
+
 DocumentPicture picture_of(const OpenedRun& run, const std::string& which) {
   const std::filesystem::path file = path_below(run.folder(), "figure.png");
   const std::string command = "geoprior render " + run.folder().string();
@@ -232,6 +266,9 @@ DocumentPicture picture_of(const OpenedRun& run, const std::string& which) {
   if (std::filesystem::is_regular_file(file) &&
       std::filesystem::file_size(file) > kMostPictureBytes) {
     return {which + ": figure.png has more than 50 MB: it is in the run's folder", {}};
+  }
+  if (std::filesystem::is_regular_file(file) && !is_png(file)) {
+    return {which + ": figure.png is no PNG; made anew by: " + command, {}};
   }
   return {which, file};
 }
@@ -249,7 +286,7 @@ std::string provenance_of(const RunRecord& record, const std::string& key) {
 }
 
 std::string commit_text(const RunRecord& record) {
-  const std::string commit = provenance_of(record, "git_commit").substr(0, 12);
+  const std::string commit = provenance_of(record, "git_commit").substr(0, kHashDigits);
   return commit + (provenance_of(record, "git_dirty") == "true" ? ", with changes" : "");
 }
 
@@ -278,7 +315,7 @@ DocumentSection runs_section(const RunComparison& comparison, const OpenedRun& b
       add(key, provenance_of(a, key), provenance_of(b, key));
     }
   }
-  add("content", a.content_sha256.substr(0, 12), b.content_sha256.substr(0, 12));
+  add("content", a.content_sha256.substr(0, kHashDigits), b.content_sha256.substr(0, kHashDigits));
   const auto add_missing = [&](const std::vector<std::string>& missing, const std::string& which) {
     if (!missing.empty()) {
       section.paragraphs.push_back("Only in the " + which + " run: " + joined(missing, "; ") + ".");
@@ -296,8 +333,12 @@ std::size_t count_claims(const RunComparison& comparison, Change change) {
 }
 
 std::string verdict_of(const RunComparison& comparison) {
+  const std::string inputs =
+      comparison.inputs.empty() ? ""
+                                : counted(comparison.inputs.size(), "input file") + " not the same";
   if (comparison.same_bytes && comparison.values.empty() && comparison.claims.empty()) {
-    return "Same bytes: frames and metrics of the two runs are equal.";
+    return "Same bytes: frames and metrics of the two runs are equal" +
+           (inputs.empty() ? "." : ", although " + inputs + ".");
   }
   const std::size_t worse = comparison.count(Change::worse);
   const std::size_t lost = comparison.count(Change::lost);
@@ -317,6 +358,7 @@ std::string verdict_of(const RunComparison& comparison) {
   if (better > 0) parts.push_back(counted(better, "value") + " better");
   const std::size_t changed = comparison.count(Change::changed);
   if (changed > 0) parts.push_back(counted(changed, "value") + " changed without being judged");
+  if (!inputs.empty()) parts.push_back(inputs);
   return std::string(fell ? "Quality fell: " : "Quality did not fall: ") + joined(parts) + ".";
 }
 
@@ -365,6 +407,7 @@ ComparisonDocument describe_comparison(const RunComparison& comparison, const Op
   auto& sections = document.sections;
   if (!comparison.keys.empty()) sections.push_back(keys_section(comparison));
   if (!comparison.options.empty()) sections.push_back(options_section(comparison));
+  if (!comparison.inputs.empty()) sections.push_back(inputs_section(comparison));
   if (!comparison.statuses.empty()) sections.push_back(statuses_section(comparison, cells));
   sections.push_back(values_section(comparison, cells));
   if (comparison.same_claims > 0 || !comparison.claims.empty()) {

@@ -1,8 +1,11 @@
 #include "testbed/runner/comparison/specification.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "testbed/joined.h"
 #include "testbed/runner/spec/json.h"
 
 namespace geoprior {
@@ -74,6 +77,20 @@ void add_differences(const std::string& key, const TomlNode* before, const TomlN
   if (one_lacks_it || old != now) all.push_back({key, old, now});
 }
 
+/// SHA-256 by name: of several files where cases or variants have read one each.
+std::map<std::string, std::set<std::string>> by_name(const std::vector<StoredFile>& files) {
+  std::map<std::string, std::set<std::string>> hashes;
+  for (const StoredFile& file : files) hashes[file.name].insert(file.sha256);
+  return hashes;
+}
+
+bool has_all(const std::vector<StoredFile>& files, const std::set<std::string>& hashes) {
+  return std::all_of(hashes.begin(), hashes.end(), [&](const std::string& hash) {
+    return std::any_of(files.begin(), files.end(),
+                       [&](const StoredFile& file) { return file.sha256 == hash; });
+  });
+}
+
 }  // namespace
 
 Differences differing_members(const TomlNode& before, const TomlNode& after) {
@@ -89,6 +106,25 @@ Differences differing_keys(const TomlNode& before, const TomlNode& after) {
     root->erase("check");
   }
   return differing_members(old, now);
+}
+
+Differences differing_inputs(const std::vector<StoredFile>& before,
+                             const std::vector<StoredFile>& after) {
+  auto old = by_name(before), now = by_name(after);
+  std::set<std::string> names;
+  for (const StoredFile& file : before) names.insert(file.name);
+  for (const StoredFile& file : after) names.insert(file.name);
+  const auto text = [](const std::set<std::string>& hashes) {
+    return hashes.empty() ? "absent" : joined(hashes);
+  };
+  Differences all;
+  for (const std::string& name : names) {
+    const std::set<std::string>&x = old[name], &y = now[name];
+    const bool lies_elsewhere =
+        (y.empty() && has_all(after, x)) || (x.empty() && has_all(before, y));
+    if (x != y && !lies_elsewhere) all.push_back({name, text(x), text(y)});
+  }
+  return all;
 }
 
 }  // namespace geoprior

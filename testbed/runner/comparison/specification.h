@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "testbed/runner/journal/run_record.h"
 #include "testbed/runner/spec/toml_tree.h"
 
 namespace geoprior {
@@ -20,5 +21,10 @@ std::vector<KeyDifference> differing_keys(const TomlNode& before, const TomlNode
 
 /// The same of two tables, all of their keys.
 std::vector<KeyDifference> differing_members(const TomlNode& before, const TomlNode& after);
+
+/// The input files that two runs read other bytes of, sorted by name, with their SHA-256 in the
+/// place of values. One that only lies elsewhere is left out.
+std::vector<KeyDifference> differing_inputs(const std::vector<StoredFile>& before,
+                                            const std::vector<StoredFile>& after);
 
 }  // namespace geoprior

@@ -14,7 +14,7 @@
 namespace geoprior {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoMargin = std::numeric_limits<double>::quiet_NaN();
 
 /// Times that are drawn from: one a frame, or the repetitions of a single one.
 std::vector<double> samples_of(const ClaimSpec& claim, const VariantRecord& variant) {
@@ -74,11 +74,11 @@ std::vector<std::uint32_t> drawn_indices(std::size_t count, RandomStream& random
 Interval timed_margin(const ClaimSpec& claim, const CaseRecord& in, std::uint64_t seed) {
   const double margin = judge(claim, in, claim.variant).worst().margin;
   const VariantRecord* of = claim.of ? find_variant(in, *claim.of) : nullptr;
-  if (claim.reduce == Reduction::every) return {margin, kNone, kNone};
+  if (claim.reduce == Reduction::every) return {margin, kNoMargin, kNoMargin};
   Drawn left(claim, samples_of(claim, *find_variant(in, claim.variant)), claim.reduce);
   Drawn right(claim, of != nullptr ? samples_of(claim, *of) : std::vector<double>(),
               claim.of_reduce.value_or(claim.reduce));
-  if (left.size() < 2 || (of != nullptr && right.size() < 2)) return {margin, kNone, kNone};
+  if (left.size() < 2 || (of != nullptr && right.size() < 2)) return {margin, kNoMargin, kNoMargin};
   RandomStream random(seed, "claim " + claim.text);
   std::vector<double> margins(kResamples);
   for (double& drawn : margins) {

@@ -154,7 +154,7 @@ TomlNode parse_toml_value(const std::string& value, const std::string& source) {
     if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
   }
   if (!is_bare_word(value)) throw Error("is no TOML value: " + value, source);
-  if (printable(value) != value) throw Error("is no UTF-8: " + value, source);
+  if (printable(value) != value) throw Error("is no printable UTF-8: " + value, source);
   TomlNode word;
   word.kind = TomlNode::Kind::text;
   word.text = value;

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <string>
 
+#include "core/error.h"
 #include "experiments/fluid/measures.h"
 #include "experiments/fluid/topic.h"
 #include "tests/core/geometry/shapes.h"
@@ -335,6 +337,45 @@ TEST_F(TankMetrics, NamesThatAreSwappedHalfWayCostHalf) {
   });
   EXPECT_EQ(over("idf1", swapped), 0.5);
   EXPECT_EQ(over("track_switches", swapped), 2);
+}
+
+/// A sea of n x n samples at rest.
+Frame sea_of(int n, double time = 0) {
+  Frame frame;
+  frame.parameter = time;
+  Part& samples = frame.parts["samples"];
+  samples.kind = Part::Kind::grid;
+  samples.grid_size = {n, n, 1};
+  for (const char* name : {"height", "rate"}) {
+    samples.arrays.push_back({name, "m", NamedArray::On::points, Eigen::VectorXd::Zero(n * n)});
+  }
+  frame.tables["sea"] = {{"depth [m]", "gravity [m/s^2]", "wind [deg]", "variance [m^2]"},
+                         Eigen::RowVector4d(10, 9.81, 0, 0)};
+  return frame;
+}
+
+// Of frames from outside, which may have any number of rows and columns.
+TEST_F(TankMetrics, SeasOfAnotherShapeAreRefused) {
+  EXPECT_EQ(value("significant_wave_height", sea_of(4)), 0);
+  const auto refused = [&](const std::function<void(Frame&)>& change) {
+    Frame frame = sea_of(4);
+    change(frame);
+    EXPECT_THROW((void)value("significant_wave_height", frame), Error);
+  };
+  refused([](Frame& f) { f.tables["sea"].rows.resize(0, 4); });
+  refused([](Frame& f) { f.tables["sea"].rows.conservativeResize(1, 3); });
+  refused([](Frame& f) { f.parts["samples"].grid_size = {4, 4, 2}; });
+  refused([](Frame& f) { f.parts["samples"].grid_size = {8, 4, 1}; });
+  refused([](Frame& f) { f.parts["samples"].arrays.pop_back(); });
+  EXPECT_NO_THROW((void)over("dispersion_error", {sea_of(4, 0), sea_of(4, 1), sea_of(4, 2)}));
+  EXPECT_THROW((void)over("dispersion_error", {sea_of(4, 0), sea_of(4, 1), sea_of(8, 2)}), Error);
+  EXPECT_THROW((void)over("dispersion_error", {sea_of(4, 0), sea_of(8, 1), sea_of(8, 2)}), Error);
+}
+
+TEST_F(TankMetrics, AFlagOfThreeNumbersIsRefused) {
+  block.parts["surface"].arrays.push_back(
+      {"feature", "1", NamedArray::On::points, Eigen::MatrixX3d::Ones(8, 3)});
+  EXPECT_THROW((void)value("seam_angle", block), Error);
 }
 
 // A ground truth without an injected animation does not exist.

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "experiments/grammar/processes/methods.h"
-#include "experiments/grammar/scene/scene.h"
+#include "tests/grammar/experiments/loaded.h"
 #include "tests/support/recording.h"
 
 namespace geoprior::grammar {
@@ -25,10 +25,6 @@ GrammarSceneOptions small_tree_scene() {
   options.gesture->steps = 4;
   options.gesture->course = GestureOptions::Course::back;
   return options;
-}
-
-std::shared_ptr<GrammarScene> loaded(const GrammarSceneOptions& options) {
-  return load_grammar_scene(options, GEOPRIOR_SOURCE_DIR "/experiments/grammar", 1);
 }
 
 test::Recording recorded(const GrammarScene& scene, const GrammarMethodOptions& options = {},

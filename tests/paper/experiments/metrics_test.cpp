@@ -328,6 +328,38 @@ TEST_F(StripMetrics, FramesThatCannotBeMeasuredAreRefused) {
   EXPECT_THROW(value("isometry_rms", frame), Error);
 }
 
+// Of frames from outside, which may have any number of columns.
+TEST_F(StripMetrics, ArraysOfAnotherShapeAreRefused) {
+  const auto refuses = [&](const char* metric, const char* part, const NamedArray& wrong) {
+    Frame frame = frame_of(strip);
+    Part& handles = frame.parts["handles"];
+    handles.kind = Part::Kind::points;
+    handles.points = Eigen::MatrixX3d::Zero(1, 3);
+    handles.arrays = {array("handle", NamedArray::On::points, Eigen::MatrixXd::Zero(1, 1)),
+                      array("force", NamedArray::On::points, Eigen::MatrixXd::Zero(1, 3))};
+    EXPECT_NO_THROW(value(metric, frame));
+    auto& arrays = frame.parts[part].arrays;
+    std::erase_if(arrays, [&](const NamedArray& a) { return a.name == wrong.name; });
+    arrays.push_back(wrong);
+    EXPECT_THROW(value(metric, frame), Error) << wrong.name;
+  };
+  const auto zeros = [](const char* name, NamedArray::On on, Eigen::Index rows, int columns) {
+    return array(name, on, Eigen::MatrixXd::Zero(rows, columns));
+  };
+  constexpr auto kPoints = NamedArray::On::points, kCells = NamedArray::On::cells;
+  refuses("kinetic_energy", "surface", zeros("velocity", kPoints, strip.x.rows(), 2));
+  const Eigen::Index cells = strip.triangles.rows();
+  for (const char* metric : {"bending_energy", "fold_energy", "bending_energy_quadric"}) {
+    refuses(metric, "surface", zeros("plastic_curvature", kCells, cells, 1));
+  }
+  refuses("handle_force_max", "handles", zeros("force", kPoints, 1, 2));
+  // The scene has handles 0 and 1.
+  for (const double number : {-1.0, 0.5, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    refuses("handle_force_max", "handles",
+            array("handle", kPoints, Eigen::MatrixXd::Constant(1, 1, number)));
+  }
+}
+
 TEST_F(StripMetrics, RememberedValuesFollowTheContent) {
   const Frame frame = frame_of(geoprior::sheets::mapped(strip, geoprior::sheets::cylinder(0.05)));
   const double before = value("bending_energy", frame).value();

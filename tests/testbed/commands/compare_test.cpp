@@ -12,6 +12,7 @@
 #include "testbed/runner/comparison/specification.h"
 #include "testbed/runner/journal/run_record.h"
 #include "testbed/runner/reference/gates.h"
+#include "testbed/streams.h"
 #include "tests/testbed/toy_home.h"
 
 namespace geoprior {
@@ -261,6 +262,41 @@ TEST_F(Compare, OneRunIsComparedWithItselfByTwoVariantsOnly) {
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'polygon'"));
   EXPECT_EQ(compare(run, run, "--variants exact").code, 2);
+  for (const char* itself : {"exact=exact", "exact=polygon,polygon=polygon"}) {
+    const Outcome refused = compare(run, run, std::string("--json --variants ") + itself);
+    EXPECT_EQ(refused.code, 2) << itself;
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("is one variant of one run, twice"), HasSubstr("--variants A=B")));
+    EXPECT_EQ(refused.out, "");
+  }
+  EXPECT_EQ(compare(run, disc("other"), "--variants exact=exact").code, 0);
+}
+
+TEST_F(Compare, InputFilesWithOtherBytesAreNamed) {
+  const fs::path run = disc("run");
+  const auto reading = [&](const std::string& name, const std::vector<StoredFile>& inputs) {
+    return changed_copy(run, name, [&](RunRecord& record) { record.inputs = inputs; });
+  };
+  const std::string old_hash(64, 'a'), new_hash(64, 'b'), kept(64, 'c');
+  const fs::path before = reading("before", {{"mine.py", old_hash}, {"kept.csv", kept}});
+  const fs::path after = reading("after", {{"mine.py", new_hash}, {"moved/kept.csv", kept}});
+  const Outcome outcome = compare_copies(before, after);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("are equal, although 1 input file is not the same."),
+                                 HasSubstr("mine.py  aaaaaaaaaaaa    bbbbbbbbbbbb"),
+                                 Not(HasSubstr("kept.csv"))));
+  const json inputs = json::parse(outcome.out)["differing_inputs"];
+  ASSERT_EQ(inputs.size(), 1U);
+  EXPECT_EQ(inputs[0], json({{"key", "mine.py"}, {"before", old_hash}, {"after", new_hash}}));
+  EXPECT_THAT(compare(run, after, "--force").err, HasSubstr("absent"));
+  const fs::path worse = changed_copy(after, "worse", [](RunRecord& record) {
+    value_of(record, "polygon", "radius_error.max").value *= 1.5;
+  });
+  EXPECT_THAT(compare_copies(before, worse).err,
+              HasSubstr("Quality fell: 1 value is worse, 1 input file is not the same."));
+  EXPECT_THAT(
+      compare(before, reading("same", {{"kept.csv", kept}, {"mine.py", old_hash}}), "--force").err,
+      Not(HasSubstr("input file")));
 }
 
 TEST_F(Compare, RunsOfOtherTopicsAreRefused) {
@@ -304,6 +340,19 @@ TEST_F(Compare, AFolderThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   EXPECT_EQ(toy::Home::read(path("file")), "no folder");
 }
 
+TEST_F(Compare, WhereNoPageCanBeWrittenTheVerdictStandsAndOutIsNamed) {
+  const fs::path before = disc("before"), after = disc("after");
+  const std::string hash = read_run_file(before / "run.h5").content_sha256;
+  const fs::path in_the_way = home_.write("after/compare-" + hash.substr(0, 8), "no folder");
+  const Outcome outcome = compare(before, after, "--json");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Same bytes"), HasSubstr(in_the_way.string()),
+                                 HasSubstr("--out DIR")));
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(compare(before, after, "--out " + path("out").string()).code, 0);
+  EXPECT_TRUE(fs::exists(path("out/compare.html")));
+}
+
 TEST_F(Compare, TitlesAndClaimsAreText) {
   const std::string title = "<script>alert(1)</script> | `a` & *b*";
   std::string text = toy::disc_experiment("segments = 16", kNear);
@@ -327,13 +376,26 @@ TEST_F(Compare, TitlesAndClaimsAreText) {
 
 TEST_F(Compare, PicturesOfBothRunsAreInThePage) {
   const fs::path before = disc("before"), after = disc("after");
-  home_.write("before/figure.png", "Man");
-  home_.write("after/figure.png", "Ma");
+  // Nine bytes are iVBORw0KGgpN; the examples of RFC 4648's alphabet: "Man" is TWFu, "Ma" TWE=.
+  const std::string signature = "\x89PNG\r\n\x1a\n", nine = signature + "M";
+  home_.write("before/figure.png", nine + "Man");
+  home_.write("after/figure.png", nine + "Ma");
   ASSERT_EQ(compare(before, after, "--out " + path("out").string()).code, 0);
-  // The examples of RFC 4648's alphabet: "Man" is TWFu, "Ma" is TWE=.
-  EXPECT_THAT(
-      toy::Home::read(path("out/compare.html")),
-      AllOf(HasSubstr("data:image/png;base64,TWFu\""), HasSubstr("data:image/png;base64,TWE=\"")));
+  EXPECT_THAT(toy::Home::read(path("out/compare.html")),
+              AllOf(HasSubstr("data:image/png;base64,iVBORw0KGgpNTWFu\""),
+                    HasSubstr("data:image/png;base64,iVBORw0KGgpNTWE=\"")));
+  for (const std::string& none :
+       {std::string("<svg onload=x>"), std::string(), signature.substr(0, 7)}) {
+    home_.write("after/figure.png", none);
+    const Outcome outcome = compare(before, after, "--out " + path("out").string());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err,
+                HasSubstr("after: figure.png is no PNG; made anew by: geoprior render"));
+    EXPECT_THAT(toy::Home::read(path("out/compare.md")),
+                AllOf(HasSubstr("- before: in compare.html"), Not(HasSubstr("- after: in"))));
+    const std::string page = toy::Home::read(path("out/compare.html"));
+    EXPECT_EQ(page.find("<img"), page.rfind("<img")) << "that of the first run alone";
+  }
   fs::remove(after / "figure.png");
   fs::create_symlink(before / "figure.png", after / "figure.png");
   EXPECT_EQ(compare(before, after).code, 2) << "no link below a run is followed";
@@ -342,8 +404,13 @@ TEST_F(Compare, PicturesOfBothRunsAreInThePage) {
 TEST(CompareEscapes, LeaveNoMarkup) {
   EXPECT_EQ(escaped_html("a < b & \"c\" 'd' > e"),
             "a &lt; b &amp; &quot;c&quot; &#39;d&#39; &gt; e");
-  EXPECT_EQ(escaped_markdown("a|b\n`c` <d> [e](f) \\g snake_case _h_"),
-            "a\\|b \\`c\\` &lt;d&gt; \\[e\\](f) \\\\g snake_case \\_h\\_");
+  // The samples that the scripts of results/ are held to as well (report_test.py).
+  std::ifstream file(GEOPRIOR_SOURCE_DIR "/tests/testbed/foreign_texts.json");
+  for (const json& sample : json::parse(file)) {
+    const auto text = sample["text"].get<std::string>();
+    EXPECT_EQ(printable(text), sample["printable"]);
+    EXPECT_EQ(escaped_markdown(text), sample["markdown"]);
+  }
 }
 
 TEST(CompareJudges, EachDirectionByItsTolerance) {

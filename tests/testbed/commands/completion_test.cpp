@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
@@ -35,19 +36,32 @@ class Completion : public ::testing::Test {
     return outcome.out;
   }
 
-  /// What bash offers for the last of these words, which the shell would have split.
-  [[nodiscard]] std::set<std::string> offered(const std::string& words) const {
+  /// What bash prints for the last of these words, which the shell would have split.
+  [[nodiscard]] std::string asked_of_bash(const std::string& words, const std::string& before,
+                                          const std::string& behind) const {
     const auto completion = home_.write("completion.bash", script("bash"));
-    const auto asking =
-        home_.write("ask.bash", "source '" + completion.string() + "'\nCOMP_WORDS=(" + words +
-                                    ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_geoprior\n"
-                                    "printf '%s\\n' \"${COMPREPLY[@]}\" >&2\n");
+    const auto asking = home_.write(
+        "ask.bash", "source '" + completion.string() + "'\n" + before + "\nCOMP_WORDS=(" + words +
+                        ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_geoprior\n" + behind + "\n");
     const ChildResult result = run_child({"bash", asking.string()});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
-    std::istringstream lines(result.errors);
-    std::set<std::string> words_offered;
-    for (std::string line; std::getline(lines, line);) words_offered.insert(line);
-    return words_offered;
+    return result.errors;
+  }
+
+  [[nodiscard]] std::set<std::string> offered(const std::string& words) const {
+    return lines_of(asked_of_bash(words, "", "printf '%s\\n' \"${COMPREPLY[@]}\" >&2"));
+  }
+
+  /// What bash is told of the words that it is offered; outside of a completion it cannot be.
+  [[nodiscard]] std::string told(const std::string& words) const {
+    return asked_of_bash(words, "told=; compopt() { told=$*; }", "echo \"$told\" >&2");
+  }
+
+  static std::set<std::string> lines_of(const std::string& text) {
+    std::istringstream all(text);
+    std::set<std::string> lines;
+    for (std::string line; std::getline(all, line);) lines.insert(line);
+    return lines;
   }
 
   /// Runs a program on a text where the program is installed.
@@ -78,6 +92,52 @@ TEST_F(Completion, BashOffersCommandsOptionsAndExperiments) {
   EXPECT_EQ(offered("geoprior run x --threads ''"), std::set<std::string>{""});
 }
 
+TEST_F(Completion, BashOffersArgumentsAtTheirPlaces) {
+  const std::set<std::string> nothing{""}, topics{"sketch", "skinning"};
+  EXPECT_EQ(offered("geoprior new ''"), std::set<std::string>{"external"});
+  EXPECT_EQ(offered("geoprior new external sk"), topics);
+  EXPECT_EQ(offered("geoprior new external skinning ''"), nothing);
+  // Values of options are no arguments.
+  EXPECT_EQ(offered("geoprior new --out x external sk"), topics);
+  EXPECT_EQ(offered("geoprior new --out = x external sk"), topics);
+  EXPECT_THAT(offered("geoprior compare x toy-c"), Contains("toy-circle/disc"));
+  EXPECT_EQ(offered("geoprior compare x y toy-c"), nothing);
+}
+
+// As names of files they are quoted, and a folder is followed by a slash and no blank.
+TEST_F(Completion, BashKnowsWhatIsAFile) {
+  for (const char* words : {"run ''", "compare x", "report x --out ''", "run x --out ''"}) {
+    EXPECT_EQ(told("geoprior " + std::string(words)), "-o filenames\n") << words;
+  }
+  EXPECT_EQ(told("geoprior new external ''"), "\n");
+}
+
+TEST_F(Completion, FishOffersArgumentsAtTheirPlaces) {
+  if (!find_program("fish")) GTEST_SKIP() << "no fish";
+  const auto completion = home_.write("completion.fish", script("fish"));
+  const auto first_words = [&](const std::string& line) {
+    const ChildResult result =
+        run_child({"fish", "-c",
+                   "source '" + completion.string() + "'; complete -C 'geoprior " + line +
+                       "' | string replace -r '\\t.*' '' >&2; true"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return lines_of(result.errors);
+  };
+  const std::set<std::string> topics{"sketch", "skinning"};
+  EXPECT_EQ(first_words("new "), std::set<std::string>{"external"});
+  EXPECT_EQ(first_words("new external sk"), topics);
+  EXPECT_EQ(first_words("new --out x external sk"), topics);
+  EXPECT_EQ(first_words("new external skinning "), std::set<std::string>{});
+  EXPECT_THAT(first_words("check x toy-circle/disc-"), Contains("toy-circle/disc-large"));
+}
+
+// --format=ply and --format ply.
+TEST_F(Completion, ZshTakesValuesBehindAnEqualsSign) {
+  const std::string zsh = script("zsh");
+  EXPECT_THAT(zsh, AllOf(HasSubstr("'--format=["), HasSubstr(":(vtp obj ply glb)'"),
+                         HasSubstr("'2:topic:(assembly "), HasSubstr("'--quick[")));
+}
+
 TEST_F(Completion, ShellsAcceptTheirScripts) {
   expect_accepted({"bash", "-n"}, script("bash"));
   expect_accepted({"zsh", "-n"}, script("zsh"));
@@ -89,7 +149,7 @@ TEST_F(Completion, EveryShellHasEveryOption) {
   const std::string zsh = script("zsh"), fish = script("fish"), bash = script("bash");
   for (const std::string option : {"quick", "variant", "resume", "fps", "rows", "format"}) {
     EXPECT_THAT(bash, HasSubstr("--" + option));
-    EXPECT_THAT(zsh, HasSubstr("--" + option + "["));
+    EXPECT_THAT(zsh, ContainsRegex("--" + option + "=?\\["));
     EXPECT_THAT(fish, HasSubstr("-l " + option));
   }
 }
@@ -100,7 +160,7 @@ TEST(CompletionScripts, DescriptionsAreQuoted) {
   const CommandTree program{"geoprior", "", "",
                             {},         {}, {{"make", "it's: x", "", {option}, {}, {}}}};
   EXPECT_THAT(zsh_completion(program, {}),
-              AllOf(HasSubstr(R"('--odd[it'\''s \[x\]\: "a\\b"]:N: ')"),
+              AllOf(HasSubstr(R"('--odd=[it'\''s \[x\]\: "a\\b"]:N: ')"),
                     HasSubstr(R"('make:it'\''s\: x')")));
   EXPECT_THAT(fish_completion(program, {}), HasSubstr(R"(-l odd -x -d 'it\'s [x]: "a\\b"')"));
 }

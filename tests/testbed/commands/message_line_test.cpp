@@ -18,6 +18,7 @@ TEST(MessageLine, NamesControlCharactersInsteadOfObeyingThem) {
             "\\xc2\\x9b2J")
       << "the same, as one character";
   EXPECT_EQ(message_line(std::string_view("\0", 1)), "\\x00");
+  EXPECT_EQ(message_line("\u202emlt.a"), "\\xe2\\x80\\xaemlt.a") << "would be read as a.tlm";
 }
 
 TEST(MessageLine, ShowsBothEndsOfALongTextAndCutsNoCharacter) {

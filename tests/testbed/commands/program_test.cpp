@@ -285,6 +285,17 @@ TEST_F(Program, CheckNamesTheMetricThatAnOptionChanged) {
   EXPECT_EQ(verdict["experiments"][0]["mismatches"][0]["variant"], "polygon");
 }
 
+TEST_F(Program, CheckOfAFileElsewhereAdvisesNoBlessingWhichIsRefused) {
+  const std::string file = home_.write("mine.toml", disc_experiment()).string();
+  const Outcome check = run("check " + file);
+  EXPECT_EQ(check.code, 1);
+  EXPECT_THAT(check.err, AllOf(HasSubstr("no reference values: only experiments of the clone"),
+                               HasSubstr("geoprior compare <run> "), Not(HasSubstr("bless"))));
+  const Outcome bless = run("bless " + file + " --reason x");
+  EXPECT_EQ(bless.code, 2);
+  EXPECT_THAT(bless.err, HasSubstr("it has no reference values to bless"));
+}
+
 TEST_F(Program, CheckFailsOnAClaimAloneAndIgnoresClaimsAboutTime) {
   const std::string slow =
       "[[claim]]\ntext = \"no time at all\"\nmetric = \"timing:solve\"\nvariant = \"polygon\"\n"

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "testbed/commands/console.h"
 #include "testbed/formats/atomic_file.h"
 #include "testbed/runner/journal/journal.h"
 #include "testbed/runner/journal/run_file.h"
@@ -131,12 +132,36 @@ TEST_F(Streams, TextForPeopleIsPrintable) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "beyond U+10FFFF";
   EXPECT_EQ(printable("bell\x07, back\b, \r, \x7f, \xc2\x9b"),
             "bell\\x07, back\\x08, \\x0d, \\x7f, \\xc2\\x9b");
-  EXPECT_EQ(printable("\033[31;1mred\033[0m"), "\033[31;1mred\033[0m");
+  EXPECT_EQ(printable("\033[31;1mred\033[0m"), "\\x1b[31;1mred\\x1b[0m");
   EXPECT_EQ(printable("\033]0;title\007\033[2J"), "\\x1b]0;title\\x07\\x1b[2J");
+  EXPECT_EQ(printable("a \u202e b \u2066\u200f\u2029"),
+            "a \\xe2\\x80\\xae b \\xe2\\x81\\xa6\\xe2\\x80\\x8f\\xe2\\x80\\xa9")
+      << "would be read from right to left, or on another line";
+  EXPECT_EQ(printable_length("\u202e"), 0U);
+  EXPECT_EQ(printable_length("\u2027"), 3U);
+}
+
+TEST_F(Streams, LinesForPeopleHaveOurColoursAndNoOthers) {
+  ::testing::internal::CaptureStderr();
+  say("\033[31;1mfailed\033[0m \033[32mok\033[0m, \033[8mhidden\033[30;40m \u202e");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "\033[31;1mfailed\033[0m \033[32mok\033[0m, \\x1b[8mhidden\\x1b[30;40m "
+            "\\xe2\\x80\\xae\n");
+}
+
+TEST_F(Streams, JsonIsTheSameInAsciiWhereATerminalWouldObeyIt) {
+  const auto printed = [](const std::string& text) {
+    ::testing::internal::CaptureStdout();
+    print_json({{"text", text}});
+    return ::testing::internal::GetCapturedStdout();
+  };
+  EXPECT_EQ(printed("90°\033"), "{\n  \"text\": \"90°\\u001b\"\n}\n");
+  EXPECT_EQ(printed("90° \u202e \u0085"), "{\n  \"text\": \"90\\u00b0 \\u202e \\u0085\"\n}\n");
 }
 
 TEST_F(Streams, PrintableTextGivesTheBytesBack) {
-  for (const std::string bytes : {"", "90°", "a\xff\xfe\x62", "\x07\xc2\x9b", "\\x", "\\xg1"}) {
+  for (const std::string bytes :
+       {"", "90°", "a\xff\xfe\x62", "\x07\xc2\x9b", "\u202e", "\\x", "\\xg1"}) {
     EXPECT_EQ(from_printable(printable(bytes)), bytes);
   }
 }
@@ -184,6 +209,9 @@ TEST_F(Streams, ArgumentsThatAreNoUtf8AreNamedEscaped) {
     EXPECT_THAT(text_of(log()), HasSubstr("\\xff"));
     EXPECT_EQ(printable(text_of(log())), text_of(log()));
   }
+  ToyProgram turned({"run", file, "--set", "title=\u202eb"}, log());
+  EXPECT_EQ(turned.wait(), 2);
+  EXPECT_THAT(text_of(log()), HasSubstr("is no printable UTF-8: \\xe2\\x80\\xaeb"));
 }
 
 class Stop : public Streams {

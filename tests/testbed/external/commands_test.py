@@ -86,6 +86,30 @@ def parameters(rows):
     frames()
     open("out/frames.csv", "w").write("frame,parameter\n" + rows)
 
+def table(name, rows):
+    frames()
+    open(f"out/{name}.csv", "w").write(rows)
+
+def own_time():
+    frames()
+    open("out/diagnostics.csv", "w").write("frame,process_wall,process_peak_memory,steps\n0,1e9,1e9,7\n2,1e9,1e9,8\n")
+
+def broken_sound():
+    frames()
+    os.mkdir("out/artifacts")
+    open("out/artifacts/sound.wav", "w").write("no sound")
+
+def link_folder():
+    os.rmdir("out")
+    os.symlink("reference", "out")
+
+def rename_folder():
+    os.rename(os.getcwd(), os.getcwd() + "-renamed")
+
+def stop_the_run():
+    os.kill(os.getppid(), 2)
+    time.sleep(98765)
+
 def look_about():
     """Fails where something of the run is open to it."""
     open_here = {os.path.realpath(f"/proc/self/fd/{fd}") for fd in os.listdir("/proc/self/fd")}
@@ -116,7 +140,17 @@ def link_out():
     "gap": lambda: parameters("0,0\n1,30\n3,60\n"),
     "double": lambda: parameters("0,0\n1,30\n1,60\n"),
     "other-case": lambda: parameters("0,0\n1,45\n2,90\n"),
+    "diagnostic-twice": lambda: table("diagnostics", "frame,work\n1,2\n1,3\n"),
+    "diagnostic-beyond": lambda: table("diagnostics", "frame,work\n0,\n9,3\n"),
+    "events": lambda: table("events", "time_s,kind,x,y,z,energy_J,duration_s,area_m2\n0,flap,0,0,0,1,0.5,\n"),
+    "event-without": lambda: table("events", "time_s,kind,x,y,z,energy_J,duration_s\n0,flap,0,0,0,1,\n"),
     "link": link_out,
+    "link-folder": link_folder,
+    "dangling": lambda: (frames(), os.symlink("nowhere", "out/events.csv")),
+    "rename-folder": rename_folder,
+    "broken-sound": broken_sound,
+    "own-time": own_time,
+    "stop": stop_the_run,
     "look-about": look_about,
 }[sys.argv[1]]()
 '''
@@ -140,7 +174,16 @@ SAID = {
     "gap": r"frames\.csv:4: frame 3 in a list of 3",
     "double": r"frames\.csv:4: frame 1 is there twice",
     "other-case": r"frame 1 is at angle 45, that of the scene at 30 deg: are these frames of another case\?",
+    "diagnostic-twice": r"diagnostics\.csv:3: frame 1 is there twice",
+    "diagnostic-beyond": r"diagnostics\.csv:3: there is no frame 9 \(allowed: 0 to 2\)",
+    "events": None,
+    "event-without": r"events\.csv:2: has no duration_s \(allowed: no empty cell in this column\)",
     "link": r"link",
+    "link-folder": r"link",
+    "dangling": r"events\.csv.*link",
+    "rename-folder": r"out: there is no such folder",
+    "broken-sound": r"^failed after 3 frames: out/artifacts/sound\.wav",
+    "own-time": None,
     "look-about": None,
 }
 
@@ -184,6 +227,8 @@ class Commands(unittest.TestCase):
         self.assertIn(f"variant 'made' would start: touch {self.folder}/touched", ended.stderr)
         self.assertIn("--allow-commands", ended.stderr)
         self.assertFalse((self.folder / "touched").exists())
+        ended = self.run_variants({"one": command("./first"), "two": command("./second", "a b", "")})
+        self.assertIn("variant 'one' would start: ./first; variant 'two' would start: ./second 'a b' ''", ended.stderr)
         self.assertFalse((self.folder / "run").exists())
 
     def test_each_failure_is_that_of_its_variant(self):
@@ -193,10 +238,14 @@ class Commands(unittest.TestCase):
                                   more=f", time_limit_s = {limits[name]}, output_limit_MB = 50") for name in SAID}
         variants["missing"] = command("/nowhere/program")
         variants["folder"] = command("/tmp")
+        (self.folder / "script").write_text("#!/nowhere/interpreter\n")
+        (self.folder / "script").chmod(0o755)
+        variants["script"] = command("./script")
         ended = self.run_variants(variants, "--allow-commands")
         self.assertEqual(ended.returncode, 1, ended.stderr)
         statuses = self.statuses()
-        for name, said in (SAID | {"missing": "cannot be started: No such file", "folder": "is a folder"}).items():
+        for name, said in (SAID | {"missing": "cannot be started: No such file", "folder": "is a folder",
+                              "script": "No such file or directory .the interpreter"}).items():
             status, frames, error = statuses[name]
             with self.subTest(name):
                 if said is None:
@@ -210,6 +259,32 @@ class Commands(unittest.TestCase):
         self.assertEqual(sleepers(), [])
         recorded = {path.parent.name for path in (self.folder / "run/frames/default").rglob("*.vtp")}
         self.assertEqual(recorded, {name for name, (_, frames, _) in statuses.items() if frames})
+
+    def test_the_time_of_a_program_is_that_of_its_run(self):
+        variants = {"made": command(PYTHON, "behaviour.py", "own-time"), "read": 'frames = "run/frames/default/made"'}
+        self.assertEqual(self.run_variants(variants, "--allow-commands").returncode, 0)
+        with h5py.File(self.folder / "run" / "run.h5") as file:
+            made, read = (file[f"cases/default/variants/{name}"] for name in variants)
+            whole = made["timing/process"][()]
+            self.assertEqual(whole.shape[0], 1)
+            self.assertNotIn("run", made["timing"])
+            diagnostics = {name: column[()].tolist() for name, column in made["diagnostics"].items()}
+            # What the program says of itself does not count; what else it says does.
+            self.assertLess(diagnostics["process_wall"][0], 1e8)
+            self.assertEqual(diagnostics["steps"][::2], [7, 8])
+            self.assertTrue(all(value != value for value in diagnostics["process_wall"][1:]))
+            self.assertEqual(made.attrs["memory_peak"], int(1e6 * diagnostics["process_peak_memory"][0]))
+            self.assertFalse({"run", "process"} & set(read["timing"]))
+            self.assertNotIn("memory_peak", read.attrs)
+        compared = subprocess.run([PROGRAM, "compare", self.folder / "run", self.folder / "run", "--variants",
+                                   "linear-blend=made", "--json", "--out", self.folder / "compared"],
+                                  capture_output=True, text=True, check=False)
+        self.assertEqual([time["phase"] for time in json.loads(compared.stdout)["times"]], ["whole run"], compared.stderr)
+
+    def test_a_stopped_run_says_how_it_is_gone_on_with(self):
+        ended = self.run_variants({"stopped": command(PYTHON, "behaviour.py", "stop")}, "--allow-commands")
+        self.assertEqual(ended.returncode, 2)
+        self.assertRegex(ended.stderr, r"go on with: .* --allow-commands .*--resume")
 
     def test_resume_runs_what_failed_and_nothing_else(self):
         (self.folder / "flaky.py").write_text(BEHAVIOUR.replace("sys.argv[1]", "sys.argv[1] if os.path.exists("
@@ -297,6 +372,28 @@ class Commands(unittest.TestCase):
             self.assertEqual(statuses[name], ("done", 3, ""))
         self.assertIn("3 frames, but 2 parameters", statuses["wrong"][2])
         self.assertIn("there is no such folder", statuses["absent"][2])
+
+    def test_numbered_files_are_even_and_of_a_kind(self):
+        given = self.folder / "given"
+        self.run_variants({"copy": command("cp", "-r", ".", str(given))}, "--allow-commands")
+        os.rename(self.folder / "run", self.folder / "made")
+        for folder, numbers in {"tens": (10, 20, 30), "gap": (1, 2, 4), "four": (0, 1, 2, 3)}.items():
+            (self.folder / folder).mkdir()
+            for number in numbers:
+                shutil.copy(given / "scene/surface.glb", self.folder / folder / f"f_{number:04d}.glb")
+        os.symlink(self.folder / "four/f_0001.glb", self.folder / "tens/g_0001.glb")
+        variants = {name: f'frames = "{pattern}"' for name, pattern in {
+            "tens": "tens/f_%04d.glb", "gap": "gap/f_%04d.glb", "four": "four/f_%04d.glb", "link": "tens/g_%04d.glb",
+            "other": "tens/f_%04d.off", "letter": "tens/f_%s.obj", "two": "tens/f_%04d_%04d.obj"}.items()}
+        ended = self.run_variants(variants)
+        self.assertEqual(ended.returncode, 1, ended.stderr)
+        statuses = self.statuses()
+        self.assertEqual(statuses["tens"], ("done", 3, ""))
+        for name, said in {"gap": "f_0004.glb: follows f_0002.glb: files are missing", "four": "4 frames, but the scene",
+                           "link": "link", "other": "unknown extension '.off'", "letter": "without 'd'",
+                           "two": "not one number"}.items():
+            self.assertEqual(statuses[name][:2], ("failed", 0))
+            self.assertIn(said, statuses[name][2])
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 # Cheap ones, of small versions.
 OF_TOPIC = {
     "skinning": "options-scene", "paper": "options-scene", "sound": "options", "fluid": "options-extract",
-    "details": "options-motion", "sketch": "options-flat", "torus": "zoom", "assembly": "substructures",
+    "details": "options-motion", "sketch": "options-flat", "torus": "against-integration", "assembly": "substructures",
     "grammar": "imported", "embryo": "cloaca"}
 
 # Topics whose metrics read nothing but points, triangles and numbers on them.

@@ -1,4 +1,6 @@
 // What a user asks of the torus and is told: files beside the frames, warnings, and bad input.
+#include "experiments/torus/scene/scene.h"
+
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -6,6 +8,7 @@
 #include "baselines/torus/revolution.h"
 #include "core/error.h"
 #include "core/geometry/topology.h"
+#include "experiments/torus/measures.h"
 #include "experiments/torus/print/solid.h"
 #include "experiments/torus/topic.h"
 #include "testbed/formats/mesh/stl_reader.h"
@@ -153,6 +156,106 @@ TEST_F(TorusScenes, WriteTheWholeTorusAsAGrid) {
   EXPECT_EQ(position.rows(), 256);
   for (const auto& file : fs::directory_iterator(folder() / "out/frames/default/v"))
     EXPECT_NE(file.path().extension(), ".vti") << "the grid is no part of a frame";
+}
+
+TorusSceneOptions small_scene() {
+  TorusSceneOptions options;
+  options.surface = 10;
+  options.windows = 2;
+  options.corrugations = {{0, 4, {}}, {1, 12, 0.8}, {2, {}, {}}};
+  options.detail = DetailOptions{0.25, 0.5, 0.1};
+  return options;
+}
+
+// What a program from outside is given is what the torus of revolution fills: each place of each
+// frame once.
+TEST(TorusGiven, IsWhatFramesOfTheTorusOfRevolutionHold) {
+  const auto scene = load_torus_scene(small_scene(), 1);
+  const Frame given = scene->given();
+  Recording run;
+  RunContext context;
+  make_revolution_torus(scene->input, {})->run(run, context, std::nullopt);
+  ASSERT_EQ(run.frames.size(), 4u);
+  std::size_t parts = 0;
+  for (std::size_t k = 0; k < run.frames.size(); ++k) {
+    const std::string number = "_000" + std::to_string(k);
+    for (const auto& [name, part] : run.frames[k].parts) {
+      if (name == "windows_before" || name == "windows_base") continue;
+      const bool once = part.kind == Part::Kind::triangles;
+      const Part& mine = given.require_part(once ? name : name + number, part.kind);
+      EXPECT_EQ(mine.points, part.points) << name << number;
+      EXPECT_EQ(mine.triangles, part.triangles) << name;
+      EXPECT_EQ(mine.require_array("parameters", NamedArray::On::points, 2).values.rows(),
+                part.points.rows());
+      parts += once && k > 0 ? 0 : 1;
+    }
+    EXPECT_EQ(given.require_table("windows" + number).rows,
+              run.frames[k].require_table("windows").rows);
+  }
+  EXPECT_EQ(given.parts.size(), parts);
+  EXPECT_EQ(given.require_table("corrugations").rows,
+            run.frames[3].require_table("corrugations").rows);
+  EXPECT_EQ(given.require_table("corrugations").rows(2, 1), scene->facts().at("N_3")) << "chosen";
+  // A window is a square of points from its corner, along x first.
+  const Eigen::RowVector3d corner = given.require_table("windows_0003").rows.row(1);
+  const Eigen::MatrixXd& at =
+      given.require_array("windows_0003", "parameters", NamedArray::On::points).values;
+  EXPECT_NEAR(at(144 + 12 + 2, 0), corner.x() + 2 * corner.z(), 1e-15);
+  EXPECT_NEAR(at(144 + 12 + 2, 1), corner.y() + corner.z(), 1e-15);
+}
+
+TEST(TorusGiven, HasASurfaceForEachView) {
+  TorusSceneOptions options = small_scene();
+  options.detail.reset();
+  options.view = ViewOptions{0.5, 0.5, 0.1, 2, 10};
+  const Frame given = load_torus_scene(options, 1)->given();
+  ASSERT_EQ(given.parts.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::VectorXd x =
+        given.require_array("surface_000" + std::to_string(k), "parameters", NamedArray::On::points)
+            .values.col(0);
+    EXPECT_NEAR(x.maxCoeff() - x.minCoeff(), k == 0 ? 0.1 : 0.01, 1e-12);
+  }
+}
+
+// Frames of other programs may leave out what they do not know, and be wrong.
+TEST(TorusMeasures, SayNothingOfAFrameThatDoesNotSayHowManyCorrugationsItHas) {
+  const auto scene = load_torus_scene(small_scene(), 1);
+  Recording run;
+  RunContext context;
+  make_revolution_torus(scene->input, {})->run(run, context, std::nullopt);
+  Frame frame = run.frames[3];
+  const auto whole = default_measures(*scene, frame);
+  EXPECT_GT(*whole->miss, 0);
+  frame.tables.erase("corrugations");
+  const auto measured = default_measures(*scene, frame);
+  EXPECT_EQ(measured->mean, whole->mean);
+  EXPECT_FALSE(measured->miss);
+  EXPECT_FALSE(measured->wanted);
+  EXPECT_FALSE(miss_ratio(*scene, FramesInMemory({frame}))) << "the frames before are not there";
+}
+
+TEST(TorusMeasures, NameATableOrPartOfAnotherSize) {
+  const auto scene = load_torus_scene(small_scene(), 1);
+  Recording run;
+  RunContext context;
+  make_revolution_torus(scene->input, {})->run(run, context, std::nullopt);
+  const auto error_with = [&](auto change) {
+    Frame frame = run.frames[3];
+    change(frame);
+    return error_of([&] {
+      (void)default_measures(*scene, frame);
+      (void)intersections(*scene, frame);
+    });
+  };
+  EXPECT_THAT(error_with([](Frame& f) { f.tables["corrugations"].rows.resize(0, 4); }),
+              AllOf(HasSubstr("corrugations"), HasSubstr("1 to 3")));
+  EXPECT_THAT(error_with([](Frame& f) { f.tables["corrugations"].rows.resize(9, 4); }),
+              HasSubstr("9 rows"));
+  EXPECT_THAT(error_with([](Frame& f) { f.tables["windows"].rows.resize(0, 3); }),
+              HasSubstr("table windows"));
+  EXPECT_THAT(error_with([](Frame& f) { f.parts["windows_base"].points.setZero(144, 3); }),
+              AllOf(HasSubstr("windows_base"), HasSubstr("288")));
 }
 
 TEST_F(TorusScenes, WarnOfAGridTooCoarseAndNotOfAFineOne) {
