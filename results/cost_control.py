@@ -46,11 +46,12 @@ SYSTEMS = [
            "self-replicating", ["deform", "pattern", "look", "stretch_threshold", "shrink_threshold"],
            ("details/scaling", "growth of self-replicating, 2 threads")),
     System("2.2.3", "relations between sub-elements", "− high", "± automatic synthesis", "assembly/marble-run", "exact",
-           ["inputs", "rules", "boundary", "count"]),
+           ["inputs", "rules", "boundary", "count"], ("assembly/scaling", "growth of two connections")),
     System("2.2.4", "hierarchical constraints", "interactive sculpting", "++ free-form deformation", "grammar/gallery",
-           "grammar", ["gesture", "rules", "ascend", "keep_edits"], ("grammar/scaling", "growth of rewrites with the scene")),
+           "grammar", ["gesture", "rules", "ascend", "keep_edits"], ("grammar/scaling", "growth of the time of a frame")),
     System("2.3", "relations of organs in space and time", "interactive query", "± query of the ontology",
-           "embryo/urinary", "ontology", ["from_day", "to_day", "disease", "query"]),
+           "embryo/urinary", "ontology", ["from_day", "to_day", "disease", "query"],
+           ("embryo/queries", "growth of all queries with what follows from the ontology")),
     System("3.1", "articulation between rigid elements", "15 frames a second at least", "± blending operator",
            "skinning/knee", "implicit", ["union", "ricci", "gradient-controlled", "bulge-in-contact", "stop_angle_deg"],
            ("skinning/scaling", "growth of implicit, 1 thread")),
@@ -61,7 +62,8 @@ SYSTEMS = [
     System("3.2.3", "basic types of sounds", "++ real time, 1–50 ms an event", "± data base of sounds",
            "paper/sound-animation", "sound", ["bank", "listener", "wall"]),
     System("3.3", "features of consistent high curvature", "+ interactive", "++ selection, and operations on it",
-           "fluid/boats-on-ocean", "pasted", ["edits", "move", "turn_deg", "scale", "start", "speed"]),
+           "fluid/boats-on-ocean", "pasted", ["edits", "move", "turn_deg", "scale", "start", "speed"],
+           ("fluid/boats-on-ocean", "growth of pasted with the samples a side of the ocean")),
 ]
 
 

@@ -26,25 +26,26 @@ namespace fs = std::filesystem;
 constexpr const char* kProgramName = "my_method.py";
 
 std::string readme(const Starter& starter) {
-  const std::string picture = starter.changes == StarterChanges::sound
-                                  ? "`spectrogram.png` and `figure.png`"
-                                  : "`figure.png`";
+  const bool is_sound = starter.changes == StarterChanges::sound;
+  const std::string run = starter.topic + "/experiment";
   return "# A method of your own beside those of `" + starter.topic +
          "`\n\n"
          "    geoprior run experiment.toml --allow-commands\n\n"
          "starts `my_method.py` for each case, measures what it leaves as it measures all, and "
-         "draws it beside\n`" +
-         starter.beside + "` (" + picture + "). Edit the function `" + starter_function(starter) +
-         "` of the program: as it stands it returns\nwhat the variant beside makes, so that every "
-         "number is equal. It needs NumPy in the `python3` that is first\nin PATH (`geoprior "
-         "doctor` looks). `--allow-commands` is there because an experiment file can start any\n"
-         "program: read files of others before you give it.\n\n"
-         "`geoprior compare RUN RUN --variants " +
-         starter.beside +
-         "=mine` says which numbers of a run are worse or better than those of\nthe variant "
-         "beside; "
-         "`docs/external-methods.md` what is in `scene.json`, how frames are written, and what\n"
-         "happens to a program that fails.\n";
+         "draws it beside `" +
+         starter.beside + "`\n(" + (is_sound ? "`spectrogram.png`" : "`figure.png`") +
+         "). Edit the function `" + starter_function(starter) +
+         "` of the program: as it stands it returns what the variant\nbeside makes, so that every "
+         "number is equal; with the instance that it names they are not.\n\n"
+         "    geoprior compare " +
+         run + " " + run + " --variants " + starter.beside +
+         "=mine\n\n"
+         "says which numbers of the newest run are better or worse than those of the variant "
+         "beside.\n\n"
+         "The program needs NumPy in the `python3` that is first in PATH (`geoprior doctor` "
+         "looks). `--allow-commands`\nis there because an experiment file can start any program: "
+         "read files of others before you give it.\n`docs/external-methods.md` says what is in "
+         "`scene.json`, how frames are written, and what happens to a\nprogram that fails.\n";
 }
 
 /// Names of files beside the experiment that they come from become those of the files.
