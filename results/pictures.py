@@ -13,9 +13,8 @@ from PIL import Image
 
 import pages
 from prose import without_code
-from runfile import RunFileError, require_regular_file, write_atomically
+from runfile import PNG_SIGNATURE, RunFileError, require_regular_file, write_atomically
 
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
 KEYWORD = b"geoprior content_sha256"
 MOST_BYTES = 1 << 20  # of a picture as it was drawn; a larger one is reduced to the width that pages show, or less
 WIDTHS = (1200, 900, 600)
@@ -25,9 +24,9 @@ BY_HAND = ("docs/images/sketch-annotate-photo.png", "docs/images/sketch-annotate
 
 def chunks(content, name):
     """(kind, data) of each chunk of a PNG. Raises RunFileError naming the file."""
-    if not content.startswith(SIGNATURE):
+    if not content.startswith(PNG_SIGNATURE):
         raise RunFileError(f"{name}: is no PNG")
-    out, at = [], len(SIGNATURE)
+    out, at = [], len(PNG_SIGNATURE)
     while at < len(content):
         if at + 8 > len(content):
             raise RunFileError(f"{name}: is cut off")
@@ -41,7 +40,7 @@ def chunks(content, name):
 
 def png_of(parts):
     """The bytes of a PNG of these chunks."""
-    return SIGNATURE + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return PNG_SIGNATURE + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
                                 for kind, data in parts)
 
 

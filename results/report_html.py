@@ -81,6 +81,8 @@ def png_figure(path, alt, caption):
         return ""
     except OSError as error:
         raise runfile.RunFileError(f"{path}: cannot be read ({error.strerror})") from error
+    if not content.startswith(runfile.PNG_SIGNATURE):
+        return f'<p class="note">{escape(path.name)} is no PNG: <code>geoprior render</code> draws it anew.</p>'
     return image_figure(content, alt, caption)
 
 

@@ -14,6 +14,8 @@ from geoprior_results.model import WHOLE_PROCESS, Claim, Ratio, Study  # noqa: F
 from geoprior_results.reading import text  # noqa: F401
 from geoprior_results.texts import printable
 
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+
 
 def read_run(place, force=False, claims_cases=False):
     """As `geoprior_results.open_run`, but without the cases that are there for claims only."""

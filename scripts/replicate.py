@@ -27,6 +27,7 @@ sys.path.insert(0, str(REPOSITORY / "results"))
 
 import records  # noqa: E402
 from geoprior_results import RunError, open_run  # noqa: E402
+from markdown_text import code, table  # noqa: E402
 from replicability import figure_key  # noqa: E402
 from runfile import run_main, write_atomically  # noqa: E402
 from wording import outcome_words, with_unit  # noqa: E402
@@ -122,13 +123,12 @@ def read_log(path, quick):
 
 def markdown(entries):
     head = ["figure", "command", "exit code", "wall time", "processor time", "peak memory", "claims", "content_sha256"]
-    rows = [[e["figure"], f"`{' '.join(e['command'])}`", str(e["exit_code"]), with_unit(e["wall_s"], "s"),
+    rows = [[e["figure"], code(" ".join(e["command"])), str(e["exit_code"]), with_unit(e["wall_s"], "s"),
              with_unit(e["processor_s"], "s"), with_unit(e["peak_memory_bytes"], "B"), e.get("claims", e.get("problem", "")),
              f"`{e['content_sha256'][:12]}`" + (" as published" if e["as_published"] else "") if "claims" in e else "–"]
             for e in entries]
-    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in [head, *rows]]
     missed = [f"- `{e['experiment']}`: {text}" for e in entries for text in e.get("not_held", [])]
-    return "\n".join(["# What was replicated", "", lines[0], "|---" * len(head) + "|", *lines[1:], "",
+    return "\n".join(["# What was replicated", "", *table(head, rows), "",
                       *(["Claims that fall short, or are not told apart, in a case at least:", "", *missed] if missed else [])])
 
 

@@ -161,6 +161,13 @@ class BrokenScriptTest(unittest.TestCase):
             self.assertEqual(script.communicate(timeout=20)[1], "")
         self.assertEqual(script.returncode, 128 + signal.SIGTERM)
 
+    def test_a_picture_that_is_none_is_not_shown(self):
+        (self.folder / "figure.png").write_text("<svg onload='alert(1)'/>")
+        self.assertEqual(run_script("report", self.folder).returncode, 0)
+        page = (self.folder / "report.html").read_text()
+        self.assertIn("figure.png is no PNG", page)
+        self.assertNotIn("image/png;base64,PHN2Z", page)
+
     def test_a_picture_that_is_a_pipe_is_refused(self):
         (self.folder / "figure.png").unlink()
         os.mkfifo(self.folder / "figure.png")
