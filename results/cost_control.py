@@ -62,8 +62,7 @@ SYSTEMS = [
     System("3.2.3", "basic types of sounds", "++ real time, 1–50 ms an event", "± data base of sounds",
            "paper/sound-animation", "sound", ["bank", "listener", "wall"]),
     System("3.3", "features of consistent high curvature", "+ interactive", "++ selection, and operations on it",
-           "fluid/boats-on-ocean", "pasted", ["edits", "move", "turn_deg", "scale", "start", "speed"],
-           ("fluid/boats-on-ocean", "growth of pasted with the samples a side of the ocean")),
+           "fluid/boats-on-ocean", "pasted", ["edits", "move", "turn_deg", "scale", "start", "speed"]),
 ]
 
 
