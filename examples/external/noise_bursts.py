@@ -136,7 +136,7 @@ def main() -> None:
         sound = burst(snap, speed, random)
         way = np.linalg.norm(np.subtract(LISTENER, [snap[axis] for axis in "xyz"]))
         first = int((snap["time_s"] - start + way / SOUND_SPEED) * RATE)
-        mix[first : first + len(sound)] += (sound / way / FULL_SCALE)[: len(mix) - first]
+        mix[first : first + len(sound)] += (sound / way / FULL_SCALE)[: max(0, len(mix) - first)]
         snap |= {"voice_start_s": sum(map(len, voices)) / RATE, "voice_length_s": len(sound) / RATE}
         voices += [0.9 * sound / max(abs(sound).max(), 1e-12), np.zeros(int(PAUSE * RATE))]
     write_wav(out / "artifacts" / "sound.wav", mix / max(1, abs(mix).max() / 0.8))

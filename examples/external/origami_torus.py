@@ -85,6 +85,8 @@ def main() -> None:
     parts, tables = scene["parts"], scene["tables"]
     if "surface" not in parts:
         raise SystemExit("the scene asks for nearer and nearer views: of triangles they have nothing to show")
+    if "corrugations" not in tables:
+        raise SystemExit("the scene asks for no corrugations: there is nothing to fold beside")
     names, *corrugations = Path(tables["corrugations"]["file"]).read_text().splitlines(keepends=True)
     folder = Path(scene["frames"]["folder"]) / "frames"
     folder.mkdir()

@@ -106,9 +106,10 @@ def main() -> None:
     x, v = rest.copy(), np.zeros_like(rest)
     frames = Path(scene["frames"]["folder"]) / "frames"
     frames.mkdir()
-    for frame, time in enumerate(times):
+    write_ply(frames / "surface_0000.ply", x, triangles, pattern=flat, velocity=v)
+    for frame, time in enumerate(times[1:], 1):
         dt = (time - times[frame - 1]) / STEPS
-        for part in np.arange(1, STEPS + 1) / STEPS if frame > 0 else ():
+        for part in np.arange(1, STEPS + 1) / STEPS:
             before, inverse_mass, now = x.copy(), 1 / mass, time - (1 - part) * STEPS * dt
             v += dt * np.array(options["gravity"])
             for k, hand in enumerate(hands):

@@ -23,6 +23,7 @@ def pushed_apart(places: np.ndarray, radius: np.ndarray) -> np.ndarray:
     for _ in range(ROUNDS):
         pairs = cKDTree(places).query_pairs(2 * (1 + MARGIN) * radius.max(), output_type="ndarray")
         way = places[pairs[:, 1]] - places[pairs[:, 0]]
+        way[~way.any(axis=1)] = [1e-9, 0, 0]  # asked to one place: pushed along x
         distance, room = np.linalg.norm(way, axis=1), radius[pairs].sum(1)
         if (distance >= room).all():
             return places

@@ -7,9 +7,13 @@ import re
 NOT_SHOWN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
+# Halves of characters that JSON can have, which are no bytes of a file.
+HALVES = re.compile("[\ud800-\udc7f\udd00-\udfff]")
+
+
 def decoded(text: str) -> str:
     """The text with bytes that were no UTF-8 as `\\xNN`."""
-    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    return HALVES.sub("\ufffd", text).encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
 def printable(text: str) -> str:

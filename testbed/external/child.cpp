@@ -297,10 +297,14 @@ CommandEnd run_external_command(const std::vector<std::string>& command, const f
   int why = 0;
   if (::read(report.ends[0], &why, sizeof why) == sizeof why) {
     std::error_code ignored;
-    end.failure = "cannot be started: " + std::string(std::strerror(why));
-    if (fs::is_directory(command.front(), ignored)) end.failure = "cannot be started: is a folder";
-    if (why == ENOENT && fs::exists(folder / command.front(), ignored)) {
-      end.failure += " (the interpreter that its first line names)";
+    end.failure = "cannot be started: ";
+    if (fs::is_directory(folder / command.front(), ignored)) {
+      end.failure += "is a folder";
+    } else {
+      end.failure += std::strerror(why);
+      if (why == ENOENT && fs::exists(folder / command.front(), ignored)) {
+        end.failure += " (the interpreter that its first line names)";
+      }
     }
     return end;
   }

@@ -106,23 +106,30 @@ PieceName piece_name(const fs::path& file) {
   return piece;
 }
 
+/// Whether a file is a part or a table of a frame, by its name.
+bool is_piece(const fs::path& file) {
+  const std::string name = file.filename().string(), extension = file.extension().string();
+  std::error_code ignored;
+  if (name.starts_with('.') || fs::is_directory(file, ignored)) return false;
+  if (name == kParameters || name == kEvents || name == kDiagnostics) return false;
+  return extension == ".csv" || is_part_extension(extension);
+}
+
+/// Folder of the pieces in a folder of the layout.
+fs::path room_of_frames(const fs::path& root) {
+  std::error_code ignored;
+  return fs::is_directory(root / kFrames, ignored) ? path_below(root, kFrames) : root;
+}
+
 void read_pieces(const fs::path& folder, ExternalFrames& found) {
   for (const fs::path& file : sorted_entries(folder)) {
-    if (file.filename().string().starts_with('.')) continue;
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored)) continue;
-    const std::string extension = file.extension().string();
-    if (extension != ".csv" && !is_part_extension(extension)) continue;
-    if (const std::string name = file.filename().string();
-        name == kParameters || name == kEvents || name == kDiagnostics) {
-      continue;
-    }
+    if (!is_piece(file)) continue;
     const PieceName piece = piece_name(file);
     if (piece.frame >= found.frames.size()) found.frames.resize(piece.frame + 1);
     auto& pieces = found.frames[piece.frame].pieces;
     for (const ExternalFrames::Piece& other : pieces) {
       // A part and a table of a frame may have one name.
-      const bool alike = (other.file.extension() == ".csv") == (extension == ".csv");
+      const bool alike = (other.file.extension() == ".csv") == (file.extension() == ".csv");
       if (other.name != piece.name || !alike) continue;
       throw Error("'" + piece.name + "' of frame " + std::to_string(piece.frame) +
                       " is there twice: " + other.file.filename().string(),
@@ -245,7 +252,6 @@ void require_parameters_of_scene(const Scene& scene, const ExternalFrames& found
 
 void find_parameters(const ExternalOptions& options, const fs::path& folder, const Scene& scene,
                      ExternalFrames& found) {
-  std::error_code ignored;
   if (!options.parameters.empty()) {
     set_parameters(options.parameters, "the option parameters", found);
   } else if (is_there(folder / kParameters)) {
@@ -263,9 +269,7 @@ ExternalFrames find_in_layout(const ExternalOptions& options, const fs::path& ro
                               const Scene& scene) {
   ExternalFrames found;
   found.root = root;
-  std::error_code ignored;
-  const bool has_room = fs::is_directory(root / kFrames, ignored);
-  read_pieces(has_room ? path_below(root, kFrames) : root, found);
+  read_pieces(room_of_frames(root), found);
   require_no_gaps(found);
   find_parameters(options, root, scene, found);
   if (is_there(root / kDiagnostics)) {
@@ -371,17 +375,15 @@ std::vector<fs::path> files_of_external_frames(const ExternalOptions& options,
   if (is_pattern(options)) {
     if (!matches_any(path)) return files;
     for (const FoundFile& found : find_numbered(path).files) add_if_file(found.file);
-    add_if_file(path.parent_path() / kParameters);
+    if (options.parameters.empty()) add_if_file(path.parent_path() / kParameters);
     return files;
   }
-  for (const fs::path& folder : {path, path / kFrames, path / kArtifacts}) {
-    for (const fs::path& file : sorted_entries(folder)) {
-      const std::string extension = file.extension().string();
-      if (folder.filename() == kArtifacts || extension == ".csv" || is_part_extension(extension)) {
-        add_if_file(file);
-      }
-    }
+  if (options.parameters.empty()) add_if_file(path / kParameters);
+  for (const char* table : {kDiagnostics, kEvents}) add_if_file(path / table);
+  for (const fs::path& file : sorted_entries(room_of_frames(path))) {
+    if (is_piece(file)) add_if_file(file);
   }
+  for (const fs::path& file : sorted_entries(path / kArtifacts)) add_if_file(file);
   return files;
 }
 

@@ -104,6 +104,11 @@ class ExternalProcess final : public Process {
     WorkFolder(const fs::path& folder, RunContext& context)
         : room_(folder.parent_path().parent_path()), context_(context) {
       remove();
+      std::error_code ignored;
+      // Frames of an earlier program must not pass for those of this one.
+      if (fs::exists(room_, ignored)) {
+        throw NotApplicable("what an earlier program left cannot be removed", room_.string());
+      }
       make_folders(folder);
     }
     ~WorkFolder() {
@@ -115,7 +120,17 @@ class ExternalProcess final : public Process {
 
    private:
     void remove() const {
-      std::error_code ignored;
+      std::error_code failed, ignored;
+      fs::remove_all(room_, failed);
+      if (!failed) return;
+      // A folder that may not be written keeps its files.
+      for (auto it = fs::recursive_directory_iterator(room_, ignored);
+           it != fs::recursive_directory_iterator(); it.increment(ignored)) {
+        std::error_code gone;
+        if (it->is_directory(gone) && !it->is_symlink(gone)) {
+          fs::permissions(it->path(), fs::perms::owner_all, fs::perm_options::add, gone);
+        }
+      }
       fs::remove_all(room_, ignored);
     }
     fs::path room_;

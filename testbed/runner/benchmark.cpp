@@ -88,13 +88,6 @@ Timing first_repetition(const Timing& recorded, int repetitions) {
   return timing;
 }
 
-bool same_frames(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const FrameRecord& x, const FrameRecord& y) {
-                      return same_parameter(x.parameter, y.parameter);
-                    });
-}
-
 std::vector<double> flat(const std::vector<std::vector<double>>& rows) {
   std::vector<double> values;
   for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
@@ -131,6 +124,13 @@ Pairs pairs_of(const VariantRecord& a, const Timing& of_a, const VariantRecord& 
 std::string name_of_rest(const std::string& phase) {
   if (phase == kWholeProcess) return phase;
   return phase == "run" ? "finish" : "finish:" + phase;
+}
+
+bool same_frames(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const FrameRecord& x, const FrameRecord& y) {
+                      return same_parameter(x.parameter, y.parameter);
+                    });
 }
 
 std::vector<double> whole_runs(const Timing& timing) {

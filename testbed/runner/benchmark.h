@@ -75,6 +75,9 @@ std::map<std::string, Timing> benchmark_processes(const std::vector<ProcessEntry
                                                   std::uint64_t seed,
                                                   const std::function<void(double)>& fraction);
 
+/// Whether the frames are at equal parameters.
+bool same_frames(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b);
+
 /// Seconds of each repetition, all frames and what follows them; of a pose method the sum of its
 /// frames. NaN where a frame has no time.
 std::vector<double> whole_runs(const Timing& timing);

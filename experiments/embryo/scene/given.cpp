@@ -91,7 +91,7 @@ void give_healthy(const EmbryoScene& scene, Frame& frame) {
       structures->add(row);
     }
   }
-  frame.tables[recorded::kShapes] = structures->finished();
+  if (structures) frame.tables[recorded::kShapes] = structures->finished();
 }
 
 FrameTable questions(const EmbryoScene& scene) {

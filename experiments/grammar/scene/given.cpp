@@ -10,6 +10,9 @@
 namespace geoprior::grammar {
 namespace {
 
+/// Key points of all steps together; with more, where they are asked to be is not given.
+constexpr Eigen::Index kMostGiven = 10'000'000;
+
 /// The object at rest, its types with their names.
 Frame rest_frame(const GrammarScene& scene) {
   const bool surface = scene.record == GrammarSceneOptions::Record::surface;
@@ -52,8 +55,12 @@ Part asked_part(const AskedPlaces& asked, const Hierarchy& rest, const Part& key
   Eigen::Index row = 0;
   for (int e = 0; e < rest.size(); ++e) {
     if (!rest.present(e)) continue;
-    for (const Eigen::Vector3d& x : asked.keys(e)) part.points.row(row++) = x.transpose();
+    for (const Eigen::Vector3d& x : asked.keys(e)) {
+      if (row < part.points.rows()) part.points.row(row) = x.transpose();
+      ++row;
+    }
   }
+  if (row != part.points.rows()) throw Error("has other key points than its frame", "the object");
   for (const char* name : {"element", "key"})
     part.arrays.push_back(keys.require_array(name, NamedArray::On::points, 1));
   return part;
@@ -102,6 +109,7 @@ Frame GrammarScene::given() const {
   give_steps(*this, frame);
   frame.tables["edits"] = edit_table(edits);
   const Part keys = frame.require_part("keys");
+  if (keys.points.rows() * std::ssize(steps) > kMostGiven) return frame;
   for (std::size_t i = 0; i < steps.size(); ++i)
     frame.parts[numbered("asked", static_cast<int>(i))] =
         asked_part(asked_at(*this, i), rest, keys);

@@ -84,6 +84,8 @@ _geoprior_place() {
     if [[ " $1 " == *" ${COMP_WORDS[i]} "* ]]; then
       [[ ${COMP_WORDS[i + 1]} == = ]] && i=$((i + 1))
       i=$((i + 1))
+      # bash parts words at "=": KEY=VALUE are three.
+      while [[ ${COMP_WORDS[i + 1]} == = ]] && ((i + 2 < COMP_CWORD)); do i=$((i + 2)); done
     elif [[ ${COMP_WORDS[i]} != -* ]]; then
       place=$((place + 1))
     fi

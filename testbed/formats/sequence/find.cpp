@@ -189,7 +189,8 @@ FoundFiles find_pattern(const fs::path& path) {
 FoundFiles find_numbered(const fs::path& path) {
   const Pattern pattern = parse_pattern(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder)) throw Error("is in no folder", path.string());
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) throw Error("is in no folder", path.string());
   const std::vector<std::string> names = names_in(folder);
   std::map<int, fs::path> by_number;
   for (const std::string& name : names) {
@@ -210,7 +211,8 @@ FoundFiles find_numbered(const fs::path& path) {
 bool matches_any(const fs::path& path) {
   const Pattern pattern = parse_pattern(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder)) return false;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) return false;
   const std::vector<std::string> names = names_in(folder);
   return std::any_of(names.begin(), names.end(),
                      [&](const std::string& name) { return pattern.match(name).has_value(); });

@@ -340,6 +340,12 @@ void compare_claim_outcomes(const Sides& sides, RunComparison& result) {
 
 using PairedTimes = std::pair<std::vector<double>, std::vector<double>>;
 
+void add_if_timed(double before, double after, PairedTimes& times) {
+  if (std::isnan(after) || !(before > 0)) return;
+  times.first.push_back(before);
+  times.second.push_back(after);
+}
+
 /// Times of equal frame and repetition; empty where there are none.
 PairedTimes paired_times(const VariantPair& pair, const std::string& phase) {
   PairedTimes times;
@@ -350,23 +356,24 @@ PairedTimes paired_times(const VariantPair& pair, const std::string& phase) {
     if (same < 0 || static_cast<std::size_t>(same) >= after.size()) continue;
     const std::vector<double>& row = after[static_cast<std::size_t>(same)];
     for (std::size_t r = 0; r < std::min(before[i].size(), row.size()); ++r) {
-      if (std::isnan(row[r]) || !(before[i][r] > 0)) continue;
-      times.first.push_back(before[i][r]);
-      times.second.push_back(row[r]);
+      add_if_timed(before[i][r], row[r], times);
     }
   }
   return times;
 }
 
-/// Times of whole runs, where a program from outside has no times of frames; else empty.
+/// Times of whole runs over the same frames, where a program from outside has no times of frames;
+/// else empty.
 PairedTimes paired_runs(const VariantPair& pair) {
-  if (!pair.before->timing.contains(kWholeProcess) && !pair.after->timing.contains(kWholeProcess)) {
-    return {};
+  const VariantRecord &a = *pair.before, &b = *pair.after;
+  const bool from_outside = a.timing.contains(kWholeProcess) || b.timing.contains(kWholeProcess);
+  const bool complete = a.status == "done" && b.status == "done" && same_frames(a.frames, b.frames);
+  if (!from_outside || !complete) return {};
+  const std::vector<double> before = whole_runs(a.timing), after = whole_runs(b.timing);
+  PairedTimes times;
+  for (std::size_t r = 0; r < std::min(before.size(), after.size()); ++r) {
+    add_if_timed(before[r], after[r], times);
   }
-  PairedTimes times{whole_runs(pair.before->timing), whole_runs(pair.after->timing)};
-  const std::size_t pairs = std::min(times.first.size(), times.second.size());
-  times.first.resize(pairs);
-  times.second.resize(pairs);
   return times;
 }
 

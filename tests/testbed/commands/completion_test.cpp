@@ -82,6 +82,8 @@ TEST_F(Completion, BashOffersCommandsOptionsAndExperiments) {
   EXPECT_THAT(offered("geoprior run toy-circle/di"),
               IsSupersetOf({"toy-circle/disc", "toy-circle/disc-large"}));
   EXPECT_THAT(offered("geoprior run toy-circle/disc --qu"), Contains("--quick"));
+  EXPECT_EQ(offered("geoprior run --set a = b toy-circle/di"),
+            offered("geoprior run toy-circle/di"));
   EXPECT_THAT(offered("geoprior check toy-circle/disc toy-circle/disc-"),
               Contains("toy-circle/disc-large"));
   EXPECT_THAT(offered("geoprior describe poly"), Contains("polygon"));
