@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 /// Of a table on the terminal; the pages have the rest.
 constexpr std::size_t kMostSaidRows = 12;
 /// Digits of the content hash that name a folder.
-constexpr std::size_t kHashDigits = 8;
+constexpr std::size_t kFolderDigits = 8;
 
 /// "a=b" of --variants.
 std::vector<std::pair<std::string, std::string>> variant_pairs(
@@ -101,6 +101,14 @@ Json keys_json(const std::vector<KeyDifference>& keys) {
   return json;
 }
 
+Json inputs_json(const std::vector<InputDifference>& inputs) {
+  Json json = Json::array();
+  for (const InputDifference& one : inputs) {
+    json.push_back({{"name", one.name}, {"before", one.before}, {"after", one.after}});
+  }
+  return json;
+}
+
 Json values_json(const RunComparison& comparison) {
   Json json = Json::array();
   for (const ValueChange& one : comparison.values) {
@@ -168,7 +176,7 @@ Json comparison_json(const RunComparison& comparison, const OpenedRun& before,
           {"after", run_json(after)},
           {"differing_keys", keys_json(comparison.keys)},
           {"differing_options", keys_json(comparison.options)},
-          {"differing_inputs", keys_json(comparison.inputs)},
+          {"differing_inputs", inputs_json(comparison.inputs)},
           {"values", values_json(comparison)},
           {"within_tolerance", comparison.within},
           {"added_metrics", comparison.added},
@@ -221,10 +229,10 @@ int compare_command(const CommandContext& context, const CompareRequest& request
   const Topic& topic = topic_of_record(after.record(), context.topics, second);
   const RunComparison comparison = compare_runs(before, after, topic, wanted);
   const ComparisonDocument document = describe_comparison(comparison, before, after);
-  const fs::path out =
-      request.out
-          ? fs::path(*request.out)
-          : path_below(second, "compare-" + before.record().content_sha256.substr(0, kHashDigits));
+  const fs::path out = request.out
+                           ? fs::path(*request.out)
+                           : path_below(second, "compare-" + before.record().content_sha256.substr(
+                                                                 0, kFolderDigits));
   say_document(document);  // first: it stands also where no page can be written
   write_pages(document, out, request.out.has_value());
   say("page     " + (out / "compare.html").string());

@@ -5,9 +5,10 @@
 namespace geoprior {
 namespace {
 
-// INSTANCE and PIECES stand for what a starter says.
+// INSTANCE and PIECES stand for what a starter says, MAIN for kMain.
 
-constexpr const char* kMovesPoints = R"PY(#!/usr/bin/env python3
+/// Of those that read .vtp.
+constexpr const char* kHead = R"PY(#!/usr/bin/env python3
 """A method of your own. Edit `move`; scene.json says what the scene is, reference/ has the frames of the variant beside.
 
 It is started in a folder of the run, and leaves its frames in out/ (docs/external-methods.md). Needs NumPy.
@@ -23,7 +24,9 @@ from pathlib import Path
 import numpy as np
 
 SCENE = json.loads(Path("scene.json").read_text())
+)PY";
 
+constexpr const char* kMovesPoints = R"PY(
 
 def move(part: str, parameter: float, points: np.ndarray) -> np.ndarray:
     """Where the points (n x 3, metres) of a part of the frame at this parameter go.
@@ -33,23 +36,7 @@ def move(part: str, parameter: float, points: np.ndarray) -> np.ndarray:
     return points
 )PY";
 
-constexpr const char* kMovesPieces = R"PY(#!/usr/bin/env python3
-"""A method of your own. Edit `move`; scene.json says what the scene is, reference/ has the frames of the variant beside.
-
-It is started in a folder of the run, and leaves its frames in out/ (docs/external-methods.md). Needs NumPy.
-"""
-import base64
-import json
-import re
-import shutil
-import struct
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-SCENE = json.loads(Path("scene.json").read_text())
-TABLE, ARRAY, PLACE = PIECES
+constexpr const char* kMovesPieces = R"PY(TABLE, ARRAY, PLACE = PIECES
 
 
 def move(piece: int, parameter: float, place: np.ndarray) -> np.ndarray:
@@ -81,11 +68,7 @@ def heard(sound: np.ndarray, rate: int) -> np.ndarray:
     For instance: return INSTANCE
     """
     return sound
-
-
-def main() -> None:
-    reference, out = Path(SCENE["reference"]["folder"]), Path(SCENE["frames"]["folder"])
-    shutil.copytree(reference, out, dirs_exist_ok=True)
+MAIN
     file = out / "artifacts/sound.wav"
     with wave.open(str(file)) as wav:
         form, data = wav.getparams(), np.frombuffer(wav.readframes(wav.getnframes()), np.uint8)
@@ -97,10 +80,6 @@ def main() -> None:
     with wave.open(str(file), "wb") as wav:
         wav.setparams(form)
         wav.writeframes(wide[:, :3].tobytes())
-
-
-if __name__ == "__main__":
-    main()
 )PY";
 
 /// Numbers of a .vtp.
@@ -142,17 +121,9 @@ def moved(text: str, part: str) -> str:
         return text
     points = move(part, unpacked(time[1])[0], points)
     return text[: found.start(1)] + packed(points) + text[found.end(1) :]
-
-
-def main() -> None:
-    reference, out = Path(SCENE["reference"]["folder"]), Path(SCENE["frames"]["folder"])
-    shutil.copytree(reference, out, dirs_exist_ok=True)
+MAIN
     for file in sorted((out / "frames").glob("*.vtp")):
         file.write_text(moved(file.read_text(), file.stem.rsplit("_", 1)[0]))
-
-
-if __name__ == "__main__":
-    main()
 )PY";
 
 constexpr const char* kPiecesMoved = R"PY(
@@ -186,17 +157,23 @@ def shifts_of(file: Path, parameter: float) -> dict[int, np.ndarray]:
         row[PLACE] = place
     np.savetxt(file, rows, fmt="%.17g", delimiter=",", header=names, comments="")
     return shifts
-
-
-def main() -> None:
-    reference, out = Path(SCENE["reference"]["folder"]), Path(SCENE["frames"]["folder"])
-    shutil.copytree(reference, out, dirs_exist_ok=True)
+MAIN
     parameters = np.loadtxt(out / "frames.csv", delimiter=",", skiprows=1, ndmin=2)[:, 1]
     for frame, parameter in enumerate(parameters):
         shifts = shifts_of(out / f"frames/{TABLE}_{frame:04d}.csv", parameter)
         for file in sorted((out / "frames").glob(f"*_{frame:04d}.vtp")):
             file.write_text(moved(file.read_text(), shifts))
+)PY";
 
+/// Begins with the frames of the variant beside, as they are.
+constexpr const char* kMain = R"PY(
+
+def main() -> None:
+    reference, out = Path(SCENE["reference"]["folder"]), Path(SCENE["frames"]["folder"])
+    shutil.copytree(reference, out, dirs_exist_ok=True)
+)PY";
+
+constexpr const char* kEnd = R"PY(
 
 if __name__ == "__main__":
     main()
@@ -213,16 +190,14 @@ std::string starter_function(const Starter& starter) {
 }
 
 std::string starter_program(const Starter& starter) {
-  switch (starter.changes) {
-    case StarterChanges::points:
-      return with(kMovesPoints, "INSTANCE", starter.instance) + kNumbers + kPointsMoved;
-    case StarterChanges::pieces:
-      return with(with(kMovesPieces, "PIECES", starter.pieces), "INSTANCE", starter.instance) +
-             kNumbers + kPiecesMoved;
-    case StarterChanges::sound:
-      break;
+  std::string text = kHearsSound;
+  if (starter.changes == StarterChanges::points) {
+    text = std::string(kHead) + kMovesPoints + kNumbers + kPointsMoved;
+  } else if (starter.changes == StarterChanges::pieces) {
+    text =
+        with(std::string(kHead) + kMovesPieces, "PIECES", starter.pieces) + kNumbers + kPiecesMoved;
   }
-  return with(kHearsSound, "INSTANCE", starter.instance);
+  return with(with(text, "MAIN\n", kMain), "INSTANCE", starter.instance) + kEnd;
 }
 
 }  // namespace geoprior

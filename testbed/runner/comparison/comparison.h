@@ -81,7 +81,7 @@ struct RunComparison {
   bool one_run = false;                ///< two variants of it
   std::vector<KeyDifference> keys;     ///< of the specifications
   std::vector<KeyDifference> options;  ///< of variants that were paired by hand
-  std::vector<KeyDifference> inputs;   ///< files that both runs read, by their SHA-256
+  std::vector<InputDifference> inputs;
   std::vector<ValueChange> values;
   std::size_t within = 0;  ///< values that moved by no more than their tolerance
   std::vector<ClaimChange> claims;

@@ -228,15 +228,11 @@ DocumentSection options_section(const RunComparison& comparison) {
   return section;
 }
 
-/// "0123456789ab, absent", of whole hashes.
-std::string short_hashes(const std::string& hashes) {
-  std::string text;
-  for (std::size_t at = 0; at < hashes.size();) {
-    const std::size_t end = std::min(hashes.find(", ", at), hashes.size());
-    text += (text.empty() ? "" : ", ") + hashes.substr(at, std::min(end - at, kHashDigits));
-    at = end + 2;
-  }
-  return text;
+/// "0123456789ab, …" or "absent".
+std::string hashes_text(const std::set<std::string>& hashes) {
+  std::vector<std::string> beginnings;
+  for (const std::string& hash : hashes) beginnings.push_back(hash.substr(0, kHashDigits));
+  return beginnings.empty() ? "absent" : joined(beginnings);
 }
 
 DocumentSection inputs_section(const RunComparison& comparison) {
@@ -245,8 +241,8 @@ DocumentSection inputs_section(const RunComparison& comparison) {
   section.paragraphs.emplace_back(
       "These files are not the same in both runs; what differs may come from them.");
   section.table.head = {"file", "SHA-256 before", "after"};
-  for (const KeyDifference& one : comparison.inputs) {
-    section.table.rows.push_back({{one.key, short_hashes(one.before), short_hashes(one.after)}});
+  for (const InputDifference& one : comparison.inputs) {
+    section.table.rows.push_back({{one.name, hashes_text(one.before), hashes_text(one.after)}});
   }
   return section;
 }

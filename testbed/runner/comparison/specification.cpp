@@ -108,21 +108,18 @@ Differences differing_keys(const TomlNode& before, const TomlNode& after) {
   return differing_members(old, now);
 }
 
-Differences differing_inputs(const std::vector<StoredFile>& before,
-                             const std::vector<StoredFile>& after) {
+std::vector<InputDifference> differing_inputs(const std::vector<StoredFile>& before,
+                                              const std::vector<StoredFile>& after) {
   auto old = by_name(before), now = by_name(after);
   std::set<std::string> names;
   for (const StoredFile& file : before) names.insert(file.name);
   for (const StoredFile& file : after) names.insert(file.name);
-  const auto text = [](const std::set<std::string>& hashes) {
-    return hashes.empty() ? "absent" : joined(hashes);
-  };
-  Differences all;
+  std::vector<InputDifference> all;
   for (const std::string& name : names) {
     const std::set<std::string>&x = old[name], &y = now[name];
     const bool lies_elsewhere =
         (y.empty() && has_all(after, x)) || (x.empty() && has_all(before, y));
-    if (x != y && !lies_elsewhere) all.push_back({name, text(x), text(y)});
+    if (x != y && !lies_elsewhere) all.push_back({name, x, y});
   }
   return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,15 @@ std::vector<KeyDifference> differing_keys(const TomlNode& before, const TomlNode
 /// The same of two tables, all of their keys.
 std::vector<KeyDifference> differing_members(const TomlNode& before, const TomlNode& after);
 
-/// The input files that two runs read other bytes of, sorted by name, with their SHA-256 in the
-/// place of values. One that only lies elsewhere is left out.
-std::vector<KeyDifference> differing_inputs(const std::vector<StoredFile>& before,
-                                            const std::vector<StoredFile>& after);
+/// A name of input files by which two runs read other bytes.
+struct InputDifference {
+  std::string name;
+  std::set<std::string> before;  ///< SHA-256; none: absent
+  std::set<std::string> after;
+};
+
+/// The input files that differ, sorted by name. One that only lies elsewhere is left out.
+std::vector<InputDifference> differing_inputs(const std::vector<StoredFile>& before,
+                                              const std::vector<StoredFile>& after);
 
 }  // namespace geoprior

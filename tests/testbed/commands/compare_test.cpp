@@ -287,7 +287,7 @@ TEST_F(Compare, InputFilesWithOtherBytesAreNamed) {
                                  Not(HasSubstr("kept.csv"))));
   const json inputs = json::parse(outcome.out)["differing_inputs"];
   ASSERT_EQ(inputs.size(), 1U);
-  EXPECT_EQ(inputs[0], json({{"key", "mine.py"}, {"before", old_hash}, {"after", new_hash}}));
+  EXPECT_EQ(inputs[0], json({{"name", "mine.py"}, {"before", {old_hash}}, {"after", {new_hash}}}));
   EXPECT_THAT(compare(run, after, "--force").err, HasSubstr("absent"));
   const fs::path worse = changed_copy(after, "worse", [](RunRecord& record) {
     value_of(record, "polygon", "radius_error.max").value *= 1.5;
