@@ -99,7 +99,8 @@ TEST_F(BadDetails, AreNamedByTheirLine) {
               AllOf(HasSubstr("d.csv:5: is in the place of"), HasSubstr("d.csv:2")));
   EXPECT_THAT(message("x,y\n0,0\n"), HasSubstr("d.csv:1: names no column 'z'"));
   EXPECT_THAT(message("x,y,z,x\n0,0,0,0\n"), HasSubstr("d.csv:1: names the column 'x' twice"));
-  EXPECT_THAT(message("x,y,z\n0,nan,0\n"), HasSubstr("d.csv:2: column 'y': 'nan' is no finite number"));
+  EXPECT_THAT(message("x,y,z\n0,nan,0\n"),
+              HasSubstr("d.csv:2: column 'y': 'nan' is no finite number"));
   EXPECT_THAT(message("x,y,z\n0,0\n"), HasSubstr("d.csv:2: has no z"));
   EXPECT_THAT(message("x,y,z,weight\n0,0,0,1.5\n"), HasSubstr("d.csv:2: weight 1.5"));
   EXPECT_THAT(message("x,y,z,type\n0,0,0,0.5\n"), HasSubstr("d.csv:2: type 0.5"));
