@@ -102,6 +102,22 @@ Part part_of(const FramePart& asked, Eigen::MatrixX3d points) {
   return out;
 }
 
+/// What a plan asks for, of the torus of revolution.
+Frame asked_frame(const TorusInput& input, const FramePlan& plan) {
+  Frame frame;
+  frame.parameter = plan.parameter;
+  for (const FramePart& asked : plan.parts) {
+    Eigen::MatrixX3d points(asked.samples.at.rows(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      points.row(i) = revolution_point(input.radii, asked.samples.at.row(i));
+    Part& part = frame.parts[asked.name] = part_of(asked, std::move(points));
+    if (part.kind != Part::Kind::grid && !asked.lattice)
+      part.arrays.push_back(parameters_array(asked.samples.at));
+  }
+  add_tables(input, plan, frame);
+  return frame;
+}
+
 class TorusFrames final : public FrameModel {
  public:
   TorusFrames(const TorusInput& input, std::unique_ptr<TorusMap> map)
@@ -158,20 +174,12 @@ std::unique_ptr<Process> make_torus_process(const TorusInput& input, TorusMapFac
   });
 }
 
-Frame asked_frame(const TorusInput& input, int number) {
-  const FramePlan plan = plan_frames(input, std::nullopt).at(number);
-  Frame frame;
-  frame.parameter = plan.parameter;
-  for (const FramePart& asked : plan.parts) {
-    Eigen::MatrixX3d points(asked.samples.at.rows(), 3);
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-      points.row(i) = revolution_point(input.radii, asked.samples.at.row(i));
-    Part& part = frame.parts[asked.name] = part_of(asked, std::move(points));
-    if (part.kind != Part::Kind::grid && !asked.lattice)
-      part.arrays.push_back(parameters_array(asked.samples.at));
+std::vector<Frame> asked_frames(const TorusInput& input) {
+  std::vector<Frame> frames;
+  for (const FramePlan& plan : plan_frames(input, std::nullopt)) {
+    frames.push_back(asked_frame(input, plan));
   }
-  add_tables(input, plan, frame);
-  return frame;
+  return frames;
 }
 
 }  // namespace geoprior::torus

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "core/method.h"
 #include "models/torus/map.h"
 
@@ -29,8 +32,8 @@ namespace geoprior::torus {
 /// Phases: "prepare", "map" (the method alone), "record".
 std::unique_ptr<Process> make_torus_process(const TorusInput& input, TorusMapFactory factory);
 
-/// Frame `number` of the torus of revolution, as a method that knows any point makes it, all of its
+/// The frames of the torus of revolution, as a method that knows any point makes them, all of their
 /// parts but "grid" with the point array "parameters" (2): what metrics ask for.
-Frame asked_frame(const TorusInput& input, int number);
+std::vector<Frame> asked_frames(const TorusInput& input);
 
 }  // namespace geoprior::torus

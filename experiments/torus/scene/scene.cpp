@@ -52,8 +52,9 @@ Frame TorusScene::given() const {
   // "grid" is for a file alone; the others are at the places of "windows".
   const std::set<std::string> left_out{"grid", "windows_before", "windows_base"};
   Frame given;
-  for (int number = 0; number <= last_parameter(); ++number) {
-    Frame asked = asked_frame(input, number);
+  std::vector<Frame> frames = asked_frames(input);
+  for (int number = 0; number < std::ssize(frames); ++number) {
+    Frame& asked = frames[number];
     for (auto& [name, part] : asked.parts) {
       if (left_out.contains(name)) continue;
       const bool once = part.kind == Part::Kind::triangles && !input.sampling.zooms;

@@ -205,27 +205,27 @@ DocumentSection times_section(const RunComparison& comparison, const RowMaker& c
   return section;
 }
 
-DocumentSection keys_section(const RunComparison& comparison) {
+DocumentSection keys_section(const std::string& heading, const std::string& words,
+                             const std::vector<KeyDifference>& keys) {
   DocumentSection section;
-  section.heading = "Specifications";
-  section.paragraphs.emplace_back(
-      "These keys differ; only cases, variants and metrics that both runs have are compared.");
+  section.heading = heading;
+  section.paragraphs = {words};
   section.table.head = {"key", "before", "after"};
-  for (const KeyDifference& one : comparison.keys) {
+  for (const KeyDifference& one : keys) {
     section.table.rows.push_back({{one.key, one.before, one.after}});
   }
   return section;
 }
 
+DocumentSection specifications_section(const RunComparison& comparison) {
+  return keys_section(
+      "Specifications",
+      "These keys differ; only cases, variants and metrics that both runs have are compared.",
+      comparison.keys);
+}
+
 DocumentSection options_section(const RunComparison& comparison) {
-  DocumentSection section = keys_section(comparison);
-  section.heading = "Variants";
-  section.paragraphs = {"What the compared variants differ in."};
-  section.table.rows.clear();
-  for (const KeyDifference& one : comparison.options) {
-    section.table.rows.push_back({{one.key, one.before, one.after}});
-  }
-  return section;
+  return keys_section("Variants", "What the compared variants differ in.", comparison.options);
 }
 
 /// "0123456789ab, …" or "absent".
@@ -401,7 +401,7 @@ ComparisonDocument describe_comparison(const RunComparison& comparison, const Op
   };
   const RowMaker cells(has_cases(false)), claim_cells(has_cases(true));
   auto& sections = document.sections;
-  if (!comparison.keys.empty()) sections.push_back(keys_section(comparison));
+  if (!comparison.keys.empty()) sections.push_back(specifications_section(comparison));
   if (!comparison.options.empty()) sections.push_back(options_section(comparison));
   if (!comparison.inputs.empty()) sections.push_back(inputs_section(comparison));
   if (!comparison.statuses.empty()) sections.push_back(statuses_section(comparison, cells));
